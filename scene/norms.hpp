@@ -1,0 +1,25 @@
+#pragma once
+// The one implementation of error norms that every study uses.
+
+#include "scene/geometry.hpp"
+#include "scene/method.hpp"
+
+namespace concord::scene {
+
+/// Weighted relative L2 norm of the difference, sqrt(sum w |a - b|^2) / sqrt(sum w |b|^2).
+/// Absolute if b vanishes.
+double relative_l2(std::span<const Vec3> a, std::span<const Vec3> b,
+                   std::span<const double> weight);
+
+/// Adds to result.errors, against the problem's exact solution at time result.t_end:
+/// displacement_l2 (relative, at the method's own samples), displacement_max [m], velocity_l2
+/// and gradient_l2 (relative, samples), and displacement_l2_common, gradient_l2_common
+/// (relative, on common_quadrature(problem)). Does nothing when the problem has no exact
+/// solution.
+void add_exact_errors(const Problem& problem, Result& result);
+
+/// Relative L2 difference of two fields on the common quadrature, normalised by the second (the
+/// reference).
+double field_difference(const Problem& problem, const Field& field, const Field& reference);
+
+}  // namespace concord::scene
