@@ -1,0 +1,31 @@
+#pragma once
+// What all particle methods share of a run: body, boundary data, integrator or static solver, histories, frames, result.
+
+#include "particle/core/force_model.hpp"
+#include "scene/method.hpp"
+
+#include <memory>
+
+namespace concord::particle {
+
+/// A particle formulation as a Method. It says what it is and makes its force model; the rest is the same for all.
+/// To add a formulation: derive, implement make_model, and register with scene::RegisterMethod.
+class ParticleMethod : public scene::Method {
+ public:
+  /// `own`: name, title, source and the formulation's own parameters; those of the solvers are appended.
+  explicit ParticleMethod(scene::MethodInfo own);
+  const scene::MethodInfo& info() const final { return m_info; }
+  void run(const scene::Problem& problem, const scene::RunRequest& request, scene::Result& result) const final;
+
+  /// Forces of this formulation on `body`. Throws InputError for settings that it cannot serve.
+  virtual std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
+                                                 const scene::Settings& settings, const Executor& executor) const = 0;
+
+ private:
+  scene::MethodInfo m_info;
+};
+
+/// Parameters of the shared solvers: solver, dt_factor, damping, ... with their meaning.
+const std::vector<scene::ParameterInfo>& solver_parameters();
+
+}  // namespace concord::particle
