@@ -1,0 +1,31 @@
+#pragma once
+// Steps of make_mesh, in its order; each works on the mesh made so far. Those that ask gmsh need
+// a GmshSession held by the caller.
+
+#include "scene/geometry.hpp"
+
+namespace concord::scene {
+
+/// Entities of dimension 0 to mesh.dim with flatness, axis and closure, from gmsh's open model.
+void collect_entities(Mesh& mesh, const Problem& problem);
+
+/// Nodes on the closure of axis-aligned planes (3D) or lines (2D) get that coordinate exactly:
+/// the one of the entity's first corner. Plane meshes get Z = 0; throws InputError if they lie
+/// elsewhere.
+void snap_to_planes(Mesh& mesh, const Problem& problem);
+
+/// Gives every cell a positive Jacobian at its corners by reflecting those that are negative.
+/// Throws InputError for cells that are folded.
+void orient_cells(Mesh& mesh, const Problem& problem);
+
+/// Every group that the problem names exists and suits what is asked of it; no two conditions
+/// prescribe different values of one component at one node.
+void check_groups(const Mesh& mesh, const Problem& problem);
+
+/// Corner nodes of a cell or facet: 2, 3, 4 or 8.
+int corner_count(CellShape shape, int dim);
+
+/// Reference coordinates of the corners of a hypercube in gmsh's order, components -1 or 1.
+Vec3 hypercube_corner(int corner, int dim);
+
+}  // namespace concord::scene

@@ -1,0 +1,163 @@
+// Exact coordinates on planes, positive cells.
+
+#include "scene/mesh_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <gmsh.h>
+
+namespace concord::scene {
+namespace {
+
+constexpr double plane_tolerance = 1e-10;  // of the body's size
+
+double body_size(const Mesh& mesh) {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (const Vec3& X : mesh.nodes) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  return (high - low).norm();
+}
+
+std::vector<std::vector<Index>> nodes_by_entity(const Mesh& mesh) {
+  std::vector<std::vector<Index>> nodes(mesh.entities.size());
+  for (std::size_t a = 0; a < mesh.nodes.size(); ++a)
+    if (mesh.node_entity[a] >= 0)
+      nodes[static_cast<std::size_t>(mesh.node_entity[a])].push_back(static_cast<Index>(a));
+  return nodes;
+}
+
+/// The exact coordinate of a plane: that of a corner as the .geo states it.
+double plane_coordinate(const Mesh& mesh, const Entity& entity, int axis, double nearby) {
+  for (const Index e : entity.closure) {
+    const Entity& corner = mesh.entities[static_cast<std::size_t>(e)];
+    if (corner.dim != 0) continue;
+    std::vector<double> X;
+    gmsh::model::getValue(0, corner.tag, {}, X);
+    return X[static_cast<std::size_t>(axis)];
+  }
+  return nearby;
+}
+
+double corner_jacobian(const Mesh& mesh, const Index* cell, int corner) {
+  const auto X = [&](int c) -> const Vec3& {
+    return mesh.nodes[static_cast<std::size_t>(cell[c])];
+  };
+  Mat3 edges = Mat3::Identity();
+  if (mesh.shape == CellShape::simplex) {
+    for (int k = 0; k < mesh.dim; ++k) edges.col(k) = X(k + 1) - X(0);
+  } else {
+    const Vec3 here = hypercube_corner(corner, mesh.dim);
+    for (int other = 0; other < corner_count(mesh.shape, mesh.dim); ++other) {
+      const Vec3 step = hypercube_corner(other, mesh.dim) - here;
+      int axis = 0;
+      if (step.cwiseAbs().sum() != 2) continue;
+      step.cwiseAbs().maxCoeff(&axis);
+      edges.col(axis) = (X(other) - X(corner)) * (step[axis] / 2);
+    }
+  }
+  if (mesh.dim == 2) edges.col(2) = Vec3::UnitZ();
+  return edges.determinant();
+}
+
+/// Node order of a reflected cell: node i takes the place of the one whose first two reference
+/// coordinates are swapped.
+std::vector<int> reflection(int gmsh_type) {
+  std::string name;
+  int dim = 0, order = 0, nodes = 0, primary = 0;
+  std::vector<double> local;
+  gmsh::model::mesh::getElementProperties(gmsh_type, name, dim, order, nodes, local, primary);
+  std::vector<int> permutation;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      const double* a = &local[static_cast<std::size_t>(dim * i)];
+      const double* b = &local[static_cast<std::size_t>(dim * j)];
+      const double w = dim == 3 ? std::abs(a[2] - b[2]) : 0;
+      if (std::abs(a[0] - b[1]) + std::abs(a[1] - b[0]) + w < 1e-6) permutation.push_back(j);
+    }
+  return permutation;
+}
+
+}  // namespace
+
+int corner_count(CellShape shape, int dim) {
+  return shape == CellShape::simplex ? dim + 1 : 1 << dim;
+}
+
+Vec3 hypercube_corner(int corner, int dim) {
+  const int ring = corner % 4;
+  return {ring == 1 || ring == 2 ? 1.0 : -1.0, ring >= 2 ? 1.0 : -1.0,
+          dim == 2 ? 0.0 : (corner >= 4 ? 1.0 : -1.0)};
+}
+
+void snap_to_planes(Mesh& mesh, const Problem& problem) {
+  const double tolerance = plane_tolerance * body_size(mesh);
+  if (mesh.dim == 2)
+    for (Vec3& X : mesh.nodes) {
+      if (std::abs(X[2]) > tolerance)
+        throw InputError(problem.geometry_where, "geometry",
+                         fmt::format("a plane body with a point at Z = {:g}", X[2]),
+                         "surfaces in the plane Z = 0");
+      X[2] = 0;
+    }
+  const auto nodes = nodes_by_entity(mesh);
+  for (Entity& entity : mesh.entities) {
+    if (entity.dim != mesh.dim - 1 || !entity.flat) continue;
+    std::vector<Index> closure = nodes[static_cast<std::size_t>(&entity - mesh.entities.data())];
+    for (const Index e : entity.closure)
+      closure.insert(closure.end(), nodes[static_cast<std::size_t>(e)].begin(),
+                     nodes[static_cast<std::size_t>(e)].end());
+    if (closure.empty()) continue;
+    for (int k = 0; k < mesh.dim; ++k) {
+      const auto coordinate = [&](Index a) { return mesh.nodes[static_cast<std::size_t>(a)][k]; };
+      const auto [low, high] = std::minmax_element(
+          closure.begin(), closure.end(),
+          [&](Index a, Index b) { return coordinate(a) < coordinate(b); });
+      if (coordinate(*high) - coordinate(*low) > tolerance) continue;
+      entity.axis = k;
+      const double exact = plane_coordinate(mesh, entity, k, coordinate(*low));
+      for (const Index a : closure) mesh.nodes[static_cast<std::size_t>(a)][k] = exact;
+      break;
+    }
+  }
+}
+
+void orient_cells(Mesh& mesh, const Problem& problem) {
+  const int corners = mesh.shape == CellShape::simplex ? 1 : corner_count(mesh.shape, mesh.dim);
+  const bool simplex = mesh.shape == CellShape::simplex;
+  const int type = mesh.dim == 3 ? (simplex ? (mesh.order == 1 ? 4 : 11) : (mesh.order == 1 ? 5 : 12))
+                                 : (simplex ? (mesh.order == 1 ? 2 : 9) : (mesh.order == 1 ? 3 : 10));
+  const std::vector<int> mirror = reflection(type);
+  const auto per_cell = static_cast<std::size_t>(mesh.nodes_per_cell);
+  std::vector<Index> old(per_cell);
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    Index* cell = &mesh.cells[c * per_cell];
+    const auto measure = [&] {
+      std::array<double, 2> low_high{1e300, -1e300};
+      for (int k = 0; k < corners; ++k) {
+        const double J = corner_jacobian(mesh, cell, k);
+        low_high = {std::min(low_high[0], J), std::max(low_high[1], J)};
+      }
+      return low_high;
+    };
+    std::array<double, 2> J = measure();
+    if (J[1] < 0) {
+      old.assign(cell, cell + per_cell);
+      for (std::size_t i = 0; i < per_cell; ++i)
+        cell[i] = old[static_cast<std::size_t>(mirror[i])];
+      J = measure();
+    }
+    if (J[0] <= 0) {
+      const Vec3& X = mesh.nodes[static_cast<std::size_t>(cell[0])];
+      throw InputError(problem.geometry_where, "geometry",
+                       fmt::format("a folded or flat cell at ({:g}, {:g}, {:g})", X[0], X[1], X[2]),
+                       "a geometry and a resolution that gmsh meshes with cells of positive "
+                       "volume; try a finer resolution");
+    }
+  }
+}
+
+}  // namespace concord::scene
