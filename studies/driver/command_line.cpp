@@ -1,0 +1,127 @@
+#include "studies/driver/command_line.hpp"
+
+#include "scene/errors.hpp"
+#include "scene/interrupt.hpp"
+#include "studies/driver/commands.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <functional>
+
+namespace concord::studies {
+namespace {
+
+/// Options of all subcommands, and the job that the chosen one sets.
+struct Commands {
+  RunOptions run;
+  StudyOptions study, report;
+  std::string filter, list_what, name, study_name;
+  bool as_json = false;
+  std::function<int()> job;
+};
+
+void add_run(CLI::App& app, Commands& commands) {
+  CLI::App* run = app.add_subcommand("run", "run one method on one scene");
+  RunOptions& options = commands.run;
+  run->add_option("SCENE", options.scene, "a scene of the library, or the path of a scene file")
+      ->required();
+  run->add_option("--method", options.method, "see: concord list methods")->required();
+  run->add_option("--resolution", options.resolution,
+                  "N: mean spacing h = L/N with the scene's reference length L")
+      ->capture_default_str();
+  run->add_option("--perturb", options.perturb,
+                  "random displacement of particles, fraction of h")
+      ->capture_default_str();
+  run->add_option("--seed", options.seed, "of the perturbation")->capture_default_str();
+  run->add_option("--threads", options.threads)->capture_default_str();
+  run->add_option("--set", options.set, "key=value of the scene, or METHOD.key=value")
+      ->take_all();
+  run->add_option("--out", options.out, "default build/runs/SCENE-METHOD");
+  run->add_flag("--frames,!--no-frames", options.frames, "write field frames (default)");
+  run->callback(
+      [&commands] { commands.job = [&commands] { return run_command(commands.run); }; });
+}
+
+void add_studies(CLI::App& app, Commands& commands) {
+  CLI::App* study = app.add_subcommand("study", "run a study and judge its claims");
+  study->add_option("STUDY", commands.study_name, "see: concord list studies")->required();
+  CLI::App* report =
+      app.add_subcommand("report", "run studies and write the report (all studies by default)");
+  report->add_option("STUDY", commands.report.studies);
+  for (auto [sub, options, out] :
+       {std::tuple{study, &commands.study, "default build/studies/STUDY"},
+        std::tuple{report, &commands.report, "default build/report"}}) {
+    sub->add_flag("--full", options->full, "the full ladders of resolutions and seeds");
+    sub->add_option("--out", options->out, out);
+    sub->add_option("--threads", options->slots,
+                    "runs at once, one thread each (default: one a core)")
+        ->check(CLI::PositiveNumber);
+  }
+  study->callback([&commands] {
+    commands.study.studies = {commands.study_name};
+    commands.job = [&commands] { return study_command(commands.study); };
+  });
+  report->callback(
+      [&commands] { commands.job = [&commands] { return report_command(commands.report); }; });
+}
+
+void add_information(CLI::App& app, Commands& commands) {
+  CLI::App* bench = app.add_subcommand("bench", "kernel benchmarks");
+  bench->add_option("FILTER", commands.filter, "regular expression");
+  bench->callback(
+      [&commands] { commands.job = [&commands] { return bench_command(commands.filter); }; });
+  CLI::App* list = app.add_subcommand("list", "scenes, methods and studies");
+  list->add_option("WHAT", commands.list_what, "scenes | methods | studies")
+      ->check(CLI::IsMember({"scenes", "methods", "studies"}));
+  list->add_flag("--json", commands.as_json);
+  list->callback([&commands] {
+    commands.job = [&commands] { return list_command(commands.list_what, commands.as_json); };
+  });
+  CLI::App* describe = app.add_subcommand("describe", "parameters of a scene, method or study");
+  describe->add_option("NAME", commands.name)->required();
+  describe->callback(
+      [&commands] { commands.job = [&commands] { return describe_command(commands.name); }; });
+}
+
+int run_job(int argc, char** argv) {
+  CLI::App app("Verification and comparison of particle methods in solid mechanics", "concord");
+  app.require_subcommand(1);
+  Commands commands;
+  add_run(app, commands);
+  add_studies(app, commands);
+  add_information(app, commands);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    const auto chosen = app.get_subcommands();
+    const std::string name = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    throw InputError({"command line"}, "concord" + name, error.what(),
+                     "what `concord" + name + " --help` lists");
+  }
+  return commands.job();
+}
+
+}  // namespace
+
+int main_program(int argc, char** argv) {
+  scene::install_interrupt_handlers();
+  const auto fail = [](int code, const std::exception& error) {
+    fmt::print(stderr, "concord: {}\n", error.what());
+    return code;
+  };
+  try {
+    return run_job(argc, argv);
+  } catch (const InputError& error) {
+    return fail(2, error);
+  } catch (const SolveError& error) {
+    return fail(3, error);
+  } catch (const Interrupted& error) {
+    return fail(130, error);
+  } catch (const std::exception& error) {
+    return fail(4, error);
+  }
+}
+
+}  // namespace concord::studies

@@ -1,0 +1,113 @@
+#include "studies/driver/rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace concord::studies {
+
+std::optional<double> value_of(const Row& row, const std::string& quantity) {
+  if (!row.error.empty()) return std::nullopt;
+  const nlohmann::json* at = &row.summary;
+  for (std::size_t begin = 0; begin <= quantity.size();) {
+    const std::size_t end = std::min(quantity.find('.', begin), quantity.size());
+    const auto found =
+        at->is_object() ? at->find(quantity.substr(begin, end - begin)) : at->end();
+    if (!at->is_object() || found == at->end()) return std::nullopt;
+    at = &*found;
+    begin = end + 1;
+  }
+  if (!at->is_number() || !std::isfinite(at->get<double>())) return std::nullopt;
+  return at->get<double>();
+}
+
+namespace {
+
+double mean_of(const std::vector<const Row*>& rows, const std::string& quantity) {
+  double sum = 0;
+  for (const Row* row : rows)
+    sum += value_of(*row, quantity).value_or(std::numeric_limits<double>::quiet_NaN());
+  return sum / static_cast<double>(rows.size());
+}
+
+std::optional<Level> level_of(const std::vector<const Row*>& rows,
+                              const std::string& quantity) {
+  Level level;
+  level.resolution = rows.front()->resolution;
+  level.seeds = rows.size();
+  level.minimum = std::numeric_limits<double>::infinity();
+  level.maximum = -level.minimum;
+  for (const Row* row : rows) {
+    const auto value = value_of(*row, quantity);
+    if (!value) return std::nullopt;
+    level.minimum = std::min(level.minimum, *value);
+    level.maximum = std::max(level.maximum, *value);
+  }
+  level.mean = mean_of(rows, quantity);
+  level.h = mean_of(rows, "h");
+  level.unknowns = mean_of(rows, "unknowns");
+  level.wall_s = mean_of(rows, "wall_s");
+  return level;
+}
+
+}  // namespace
+
+std::vector<Level> levels_of(const std::vector<Row>& rows, std::size_t case_index,
+                             const std::string& quantity) {
+  std::map<double, std::vector<const Row*>> by_resolution;
+  for (const Row& row : rows)
+    if (row.case_index == case_index) by_resolution[row.resolution].push_back(&row);
+  std::vector<Level> levels;
+  for (const auto& [resolution, seeds] : by_resolution)
+    if (auto level = level_of(seeds, quantity)) levels.push_back(*level);
+  return levels;
+}
+
+std::vector<FitResult> fit_all(const Study& study, const std::vector<Row>& rows) {
+  std::vector<FitResult> results;
+  for (const Fit& fit : study.fits)
+    for (std::size_t c = 0; c < study.cases.size(); ++c) {
+      if (!study.cases[c].matches(fit.selector)) continue;
+      auto levels = levels_of(rows, c, fit.quantity);
+      if (levels.size() < (fit.finest ? fit.finest : 3)) continue;
+      if (fit.finest)
+        levels.erase(levels.begin(), levels.end() - static_cast<long>(fit.finest));
+      std::vector<double> h, value;
+      FitResult result{c, fit.quantity, {}, {}};
+      for (const Level& level : levels) {
+        h.push_back(level.h);
+        value.push_back(level.mean);
+        result.resolutions.push_back(level.resolution);
+      }
+      if (std::any_of(value.begin(), value.end(), [](double v) { return !(v > 0); })) continue;
+      result.line = fit_loglog(h, value);
+      results.push_back(std::move(result));
+    }
+  return results;
+}
+
+std::vector<ReferenceResult> references_of(const Study& study, const std::vector<Row>& rows) {
+  std::vector<ReferenceResult> results;
+  for (const Reference& reference : study.references)
+    for (std::size_t c = 0; c < study.cases.size(); ++c) {
+      if (!study.cases[c].matches(reference.selector)) continue;
+      auto levels = levels_of(rows, c, reference.quantity);
+      if (levels.size() > 3) levels.erase(levels.begin(), levels.end() - 3);
+      ReferenceResult result{c, reference.quantity, reference.formal_order, {}, 0, {}};
+      std::vector<double> h, value;
+      for (const Level& level : levels) {
+        h.push_back(level.h);
+        value.push_back(level.mean);
+        result.resolutions.push_back(level.resolution);
+      }
+      if (!value.empty()) result.value = value.back();
+      if (value.size() == 3)
+        result.convergence = grid_convergence(h, value, reference.formal_order);
+      else
+        result.convergence.statement = "not asymptotic: fewer than three levels have a value";
+      results.push_back(std::move(result));
+    }
+  return results;
+}
+
+}  // namespace concord::studies

@@ -1,0 +1,128 @@
+#include "studies/driver/commands.hpp"
+
+#include "scene/norms.hpp"
+#include "scene/output.hpp"
+#include "scene/reader.hpp"
+#include "studies/driver/cache.hpp"
+#include "studies/driver/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace concord::studies {
+namespace fs = std::filesystem;
+namespace {
+
+/// What --set gave, sorted by whom it concerns.
+struct Given {
+  std::vector<scene::Override> of_scene;
+  std::map<std::string, std::string> of_method;
+};
+
+/// A key whose first part is a method's name is a setting of that method, any other one of the
+/// scene.
+Given sort_settings(const RunOptions& options) {
+  Given given;
+  for (const std::string& text : options.set) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      throw InputError({"command line"}, "--set", '"' + text + '"', "key=value");
+    const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
+    const std::string prefix = key.substr(0, key.find('.'));
+    bool of_method = false;
+    for (const scene::Method* method : scene::MethodRegistry::instance().all())
+      of_method = of_method || method->info().name == prefix;
+    if (!of_method) {
+      given.of_scene.emplace_back(key, value);
+    } else if (prefix == options.method && key.size() > prefix.size() + 1) {
+      given.of_method[key.substr(prefix.size() + 1)] = value;
+    } else {
+      throw InputError({"command line"}, "--set " + key, "a setting of method " + prefix,
+                       "settings of the method that runs (" + options.method +
+                           ") and keys of the scene");
+    }
+  }
+  return given;
+}
+
+void print_map(const char* title, const std::map<std::string, double>& values) {
+  for (const auto& [name, value] : values) {
+    fmt::print("  {:<11} {:<28} {:.6g}\n", title, name, value);
+    title = "";
+  }
+}
+
+void print_summary(const scene::RunIdentity& id, const scene::Result& result,
+                   const fs::path& out) {
+  fmt::print("{} with {}{}\n", id.scene, id.method,
+             id.variant.empty() ? "" : " (" + id.variant + ")");
+  fmt::print("  resolution {:g}, h {:.4g} m, {} unknowns, {} particles or nodes\n",
+             id.resolution, result.h, result.unknowns, result.particles);
+  fmt::print("  {} steps to t = {:.6g}, {:.3g} s (and {:.3g} s to set up)\n", result.steps,
+             result.t_end, result.wall_s, result.setup_s);
+  print_map("errors", result.errors);
+  print_map("invariants", result.invariants);
+  print_map("quantities", result.quantities);
+  fmt::print("  {}\n", (out / "summary.json").string());
+}
+
+void check(const RunOptions& options) {
+  const auto reject = [](const char* key, double found, const char* allowed) {
+    throw InputError({"command line"}, key, fmt::format("{:g}", found), allowed);
+  };
+  if (!(options.resolution > 0) || !std::isfinite(options.resolution))
+    reject("--resolution", options.resolution,
+           "a number above 0: spacings along the scene's reference length");
+  if (!(options.perturb >= 0 && options.perturb <= max_perturb))
+    reject("--perturb", options.perturb, "a fraction of the spacing from 0 to 0.45");
+  if (options.threads < 1) reject("--threads", options.threads, "1 or more");
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+  check(options);
+  const scene::Method& method = scene::MethodRegistry::instance().find(options.method);
+  const Given given = sort_settings(options);
+  const scene::Settings settings(options.method, method.info().parameters, given.of_method);
+  const scene::Problem problem = scene::read_problem(options.scene, given.of_scene);
+  const fs::path out = options.out.empty()
+                           ? build_home() / "runs" / (problem.name + "-" + options.method)
+                           : options.out;
+  fs::create_directories(out);
+  fs::remove(out /
+             "summary.json");  // of an earlier run: whoever reads it must not take it for ours
+  const scene::RunIdentity id{problem.name,  options.method,     settings.variant(),
+                              problem.dim(), options.resolution, options.perturb,
+                              options.seed};
+  Progress progress(problem.name + ", " + options.method);
+  scene::RunRequest request;
+  request.h = problem.reference_length / options.resolution;
+  request.perturb = options.perturb;
+  request.seed = options.seed;
+  request.threads = options.threads;
+  request.settings = given.of_method;
+  request.out = out;
+  request.write_frames = options.frames;
+  request.progress = [&progress](double done, const std::string& what) {
+    progress.update(done, what);
+  };
+  scene::Result result;
+  result.threads = options.threads;
+  try {
+    method.run(problem, request, result);
+    scene::add_exact_errors(problem, result);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {  // numerics or Ctrl-C: keep what there is
+    scene::write_file(out / "summary.json", scene::summary_json(id, result, error.what()));
+    throw;
+  }
+  progress.finish();
+  scene::write_file(out / "summary.json", scene::summary_json(id, result));
+  print_summary(id, result, out);
+  return 0;
+}
+
+}  // namespace concord::studies

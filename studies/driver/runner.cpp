@@ -1,0 +1,246 @@
+#include "studies/driver/runner.hpp"
+
+#include "scene/interrupt.hpp"
+#include "scene/method.hpp"
+#include "scene/reader.hpp"
+#include "studies/driver/child.hpp"
+#include "studies/driver/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace concord::studies {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double patience_s = 20;  ///< for a child to reach the end of its step after Ctrl-C
+
+struct Job {
+  std::size_t row = 0;  ///< index into the rows
+  std::string key;
+  fs::path folder;
+  std::vector<std::string> arguments;
+  double weight = 1;  ///< guess of the cost, for the time left
+  std::string what;
+};
+
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+scene::Problem problem_of(const Case& entry) {
+  const std::vector<scene::Override> overrides(entry.scene_set.begin(), entry.scene_set.end());
+  return scene::read_problem(entry.scene, overrides);
+}
+
+/// Throws InputError at the case when its method or settings are wrong.
+void check_method(const Case& entry) {
+  const auto& method = scene::MethodRegistry::instance().find(entry.method);
+  try {
+    scene::Settings(entry.method, method.info().parameters, entry.set);
+  } catch (const InputError& error) {
+    throw InputError(entry.where, error.key(), error.found(), error.allowed());
+  }
+}
+
+std::vector<std::string> arguments_of(const Case& entry, const Job& job, const RunKey& run) {
+  std::vector<std::string> arguments{"run",          entry.scene,
+                                     "--method",     entry.method,
+                                     "--resolution", fmt::format("{}", run.resolution),
+                                     "--perturb",    fmt::format("{}", entry.perturb),
+                                     "--seed",       fmt::format("{}", run.seed),
+                                     "--threads",    "1",
+                                     "--out",        job.folder.string()};
+  if (!run.frames) arguments.emplace_back("--no-frames");
+  for (const auto& [key, value] : entry.scene_set)
+    arguments.insert(arguments.end(), {"--set", key + "=" + value});
+  for (const auto& [key, value] : entry.set)
+    arguments.insert(arguments.end(), {"--set", entry.method + "." + key + "=" + value});
+  return arguments;
+}
+
+struct Plan {
+  std::vector<Row> rows;
+  std::vector<Job> jobs;
+};
+
+Plan make_plan(const Study& study, const RunnerOptions& options) {
+  Plan plan;
+  for (std::size_t c = 0; c < study.cases.size(); ++c) {
+    const Case& entry = study.cases[c];
+    check_method(entry);
+    const scene::Problem problem = problem_of(entry);
+    const std::string name = slug(entry.scene + "-" + entry.method + "-" + entry.variant);
+    for (const double resolution : entry.resolutions)
+      for (const std::uint64_t seed : entry.seeds) {
+        const bool frames = entry.frames && resolution == entry.resolutions.back() &&
+                            seed == entry.seeds.front();
+        const RunKey run{&entry, resolution, seed, frames, study.timing};
+        Row row{c, resolution, seed, nlohmann::json::object(), "", {}};
+        row.run = fs::path("runs") / name / fmt::format("{:g}-{}", resolution, seed);
+        Job job{plan.rows.size(),
+                cache_key(problem, run),
+                options.out / row.run,
+                {},
+                1,
+                fmt::format("{}, {:g}", entry.title(), resolution)};
+        job.arguments = arguments_of(entry, job, run);
+        job.weight += std::pow(resolution, problem.dim() + (problem.is_static ? 0 : 1));
+        plan.rows.push_back(std::move(row));
+        plan.jobs.push_back(std::move(job));
+      }
+  }
+  return plan;
+}
+
+/// Reads what a finished run left; `how` says how it ended when it was computed now.
+void read_row(Row& row, const fs::path& folder, const ChildExit& how) {
+  try {
+    row.summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+    row.error = row.summary.value("error", "");
+  } catch (const nlohmann::json::exception&) {
+    row.error = "no readable summary.json";
+  }
+  if (how.signal != 0)
+    row.error = fmt::format("ended by signal {}", how.signal);
+  else if (how.code != 0 && row.error.empty())
+    row.error = fmt::format("ended with exit code {}", how.code);
+}
+
+/// Children at work, a slot each.
+class Crew {
+ public:
+  Crew(const Study& study, Plan& plan, const Cache& cache, RunnerResult& result)
+      : m_study(study), m_plan(plan), m_cache(cache), m_result(result),
+        m_done(plan.rows.size()) {}
+
+  void work(std::vector<Job> queue, std::size_t slots) {
+    // The longest first: the slots then end at about the same time.
+    std::stable_sort(queue.begin(), queue.end(),
+                     [](const Job& a, const Job& b) { return a.weight > b.weight; });
+    double total = 0, done = 0;
+    for (const Job& job : queue) total += job.weight;
+    Progress progress(m_study.name);
+    std::size_t next = 0, finished = 0;
+    while (finished < queue.size()) {
+      while (m_running.size() < slots && next < queue.size()) start(queue[next++]);
+      if (scene::interrupted()) return stop();
+      progress.update(done / total, fmt::format("{}/{} {}", finished, queue.size(),
+                                                m_running.front().job.what));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      for (std::size_t i = 0; i < m_running.size();) {
+        const auto how = poll_child(m_running[i].pid);
+        if (!how) {
+          ++i;
+          continue;
+        }
+        const Job job = std::move(m_running[i].job);
+        m_running.erase(m_running.begin() + static_cast<long>(i));
+        finish(job, *how);
+        done += job.weight;
+        ++finished;
+      }
+    }
+  }
+
+  void mark_done(std::size_t row) { m_done[row] = true; }
+  const std::vector<bool>& done() const { return m_done; }
+
+ private:
+  struct Running {
+    pid_t pid = 0;
+    Job job;
+  };
+
+  void start(const Job& job) {
+    fs::remove_all(job.folder);
+    fs::create_directories(job.folder);
+    const fs::path output = job.folder.string() + ".out", errors = job.folder.string() + ".err";
+    m_running.push_back({start_child(job.arguments, output, errors), job});
+  }
+
+  void finish(const Job& job, const ChildExit& how) {
+    const std::string message = read_text(job.folder.string() + ".err");
+    fs::remove(job.folder.string() + ".out");
+    fs::remove(job.folder.string() + ".err");
+    Row& row = m_plan.rows[job.row];
+    if (how.code == 2) {
+      stop();
+      throw InputError(m_study.cases[row.case_index].where, "case", job.what, message);
+    }
+    if (scene::interrupted()) return;  // stopped before its end
+    read_row(row, job.folder, how);
+    m_done[job.row] = true;
+    ++m_result.computed;
+    if (how.signal == 0 && (how.code == 0 || how.code == 3)) m_cache.store(job.key, job.folder);
+  }
+
+  void stop() {
+    std::vector<pid_t> children;
+    for (const Running& running : m_running) children.push_back(running.pid);
+    stop_children(children, patience_s);
+    for (const Running& running : m_running) {
+      fs::remove(running.job.folder.string() + ".out");
+      fs::remove(running.job.folder.string() + ".err");
+    }
+    m_running.clear();
+    m_result.interrupted = scene::interrupted();
+  }
+
+  const Study& m_study;
+  Plan& m_plan;
+  const Cache& m_cache;
+  RunnerResult& m_result;
+  std::vector<bool> m_done;
+  std::vector<Running> m_running;
+};
+
+}  // namespace
+
+std::string slug(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const bool keep = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_';
+    if (keep)
+      result += c;
+    else if (!result.empty() && result.back() != '-')
+      result += '-';
+  }
+  while (!result.empty() && result.back() == '-') result.pop_back();
+  return result;
+}
+
+RunnerResult run_cases(const Study& study, const RunnerOptions& options) {
+  fs::create_directories(options.out);
+  fs::remove_all(options.out / "runs");
+  Plan plan = make_plan(study, options);
+  const Cache cache(cache_folder());
+  RunnerResult result;
+  Crew crew(study, plan, cache, result);
+  std::vector<Job> missing;
+  for (const Job& job : plan.jobs) {
+    if (!cache.fetch(job.key, job.folder)) {
+      missing.push_back(job);
+      continue;
+    }
+    read_row(plan.rows[job.row], job.folder, {});
+    crew.mark_done(job.row);
+    ++result.reused;
+  }
+  if (!missing.empty())
+    crew.work(std::move(missing), study.timing ? 1 : static_cast<std::size_t>(options.slots));
+  for (std::size_t i = 0; i < plan.rows.size(); ++i)
+    if (crew.done()[i]) result.rows.push_back(std::move(plan.rows[i]));
+  return result;
+}
+
+}  // namespace concord::studies

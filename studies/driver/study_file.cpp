@@ -1,0 +1,125 @@
+#include "studies/driver/study_file.hpp"
+
+#include "scene/suggest.hpp"
+#include "studies/driver/study_entries.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace concord::studies {
+namespace {
+
+void check_selects(const std::vector<Case>& all, const Selector& selector, bool one,
+                   const SourcePosition& where, const std::string& key) {
+  std::vector<std::string> matching, titles;
+  for (const Case& entry : all) {
+    titles.push_back(entry.title());
+    if (entry.matches(selector)) matching.push_back(entry.title());
+  }
+  const std::string found =
+      fmt::format("scene {}, method {}, variant {}", selector.scene.value_or("any"),
+                  selector.method.value_or("any"), selector.variant.value_or("any"));
+  if (matching.empty())
+    throw InputError(where, key, found,
+                     "a case of this study: " + fmt::format("{}", fmt::join(titles, "; ")));
+  if (one && matching.size() > 1)
+    throw InputError(where, key, found,
+                     "one case, but it selects " +
+                         fmt::format("{}", fmt::join(matching, "; ")));
+}
+
+void check(const Study& study, const std::vector<Case>& all) {
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (all[i].title() == all[j].title())
+        throw InputError(all[i].where, "case.variant", all[i].title(),
+                         "a scene, method and variant that no other case has");
+  for (std::size_t i = 0; i < study.claims.size(); ++i) {
+    const Claim& claim = study.claims[i];
+    for (std::size_t j = 0; j < i; ++j)
+      if (study.claims[j].id == claim.id)
+        throw InputError(claim.where, "claim.id", claim.id, "an id that no other claim has");
+    check_selects(all, claim.selector, claim.kind != ClaimKind::value, claim.where, "claim");
+    if (claim.kind == ClaimKind::ratio)
+      check_selects(all, claim.other, true, claim.where, "claim.other");
+  }
+  for (const Reference& reference : study.references)
+    check_selects(all, reference.selector, true, reference.where, "reference");
+}
+
+Study parse_study(const std::filesystem::path& file, bool full) {
+  const scene::ConfigNode root = scene::read_toml(file);
+  StrictTable table(root);
+  Study study;
+  study.full = full;
+  study.title = table.text("title");
+  study.question = table.text("question");
+  study.source = table.text("source");
+  study.paper_statement = table.text_or("paper_statement", "");
+  study.timing = table.flag_or("timing", false);
+  std::vector<Case> all;
+  for (const StrictTable& entry : table.tables("case")) {
+    CaseEntry read = read_case(entry, full);
+    all.insert(all.end(), read.cases.begin(), read.cases.end());
+    if (read.in_mode)
+      study.cases.insert(study.cases.end(), read.cases.begin(), read.cases.end());
+  }
+  for (const StrictTable& entry : table.tables("fit")) study.fits.push_back(read_fit(entry));
+  for (const StrictTable& entry : table.tables("reference"))
+    study.references.push_back(read_reference(entry));
+  for (const StrictTable& entry : table.tables("claim"))
+    study.claims.push_back(read_claim(entry));
+  for (const StrictTable& entry : table.tables("plot")) study.plots.push_back(read_plot(entry));
+  for (const StrictTable& entry : table.tables("picture"))
+    study.pictures.push_back(read_picture(entry));
+  table.finish();
+  check(study, all);
+  return study;
+}
+
+}  // namespace
+
+bool Case::matches(const Selector& selector) const {
+  return (!selector.scene || *selector.scene == scene) &&
+         (!selector.method || *selector.method == method) &&
+         (!selector.variant || *selector.variant == variant);
+}
+
+std::string Case::title() const {
+  return method + (variant.empty() ? "" : " (" + variant + ")") + " on " + scene;
+}
+
+Study read_study(const std::string& name, bool full, const std::filesystem::path& home) {
+  const auto file = home / "studies" / name / "study.toml";
+  const auto names = study_names(home);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError({}, "study", scene::quoted(name), scene::allowed_words(name, names));
+  Study study = parse_study(file, full);
+  study.name = name;
+  return study;
+}
+
+std::vector<std::string> study_names(const std::filesystem::path& home) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(home / "studies", none))
+    if (std::filesystem::exists(entry.path() / "study.toml"))
+      names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+double display_factor(const std::string& unit, const SourcePosition& where) {
+  static const std::map<std::string, double> factors{
+      {"1", 1},      {"%", 100},    {"N", 1}, {"m", 1},    {"mm", 1e3}, {"Pa", 1},
+      {"kPa", 1e-3}, {"MPa", 1e-6}, {"s", 1}, {"ms", 1e3}, {"us", 1e6}, {"J", 1}};
+  const auto found = factors.find(unit);
+  if (found != factors.end()) return found->second;
+  std::vector<std::string> words;
+  for (const auto& [name, factor] : factors) words.push_back(name);
+  throw InputError(where, "claim.unit", scene::quoted(unit), scene::allowed_words(unit, words));
+}
+
+}  // namespace concord::studies

@@ -1,0 +1,192 @@
+#include "studies/driver/study_output.hpp"
+
+#include "scene/output.hpp"
+#include "studies/driver/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace concord::studies {
+namespace {
+
+using nlohmann::json;
+
+json number_or_null(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? json(*value) : json(nullptr);
+}
+
+void put(json& object, const char* key, const std::optional<std::string>& value) {
+  if (value) object[key] = *value;
+}
+
+void put(json& object, const char* key, const std::optional<double>& value) {
+  if (value && std::isfinite(*value)) object[key] = *value;
+}
+
+void put(json& object, const Selector& selector) {
+  put(object, "scene", selector.scene);
+  put(object, "method", selector.method);
+  put(object, "variant", selector.variant);
+}
+
+void name_case(json& object, const Case& entry) {
+  object["scene"] = entry.scene;
+  object["method"] = entry.method;
+  object["variant"] = entry.variant;
+}
+
+const char* to_text(ClaimKind kind) {
+  switch (kind) {
+    case ClaimKind::slope:
+      return "slope";
+    case ClaimKind::value:
+      return "value";
+    case ClaimKind::ratio:
+      return "ratio";
+    case ClaimKind::gci:
+      return "gci";
+  }
+  return "";
+}
+
+json claim_json(const ClaimResult& result) {
+  const Claim& claim = *result.claim;
+  json object{{"id", claim.id},
+              {"statement", claim.statement},
+              {"source", claim.source},
+              {"source_value", claim.source_value},
+              {"kind", to_text(claim.kind)},
+              {"quantity", claim.quantity},
+              {"unit", claim.unit},
+              {"bound", bound_text(claim)},
+              {"measured", number_or_null(result.measured)},
+              {"verdict", to_text(result.verdict)}};
+  put(object, claim.selector);
+  put(object, "resolution", claim.resolution);
+  put(object, "min", claim.minimum);
+  put(object, "max", claim.maximum);
+  if (!result.reason.empty()) object["reason"] = result.reason;
+  return object;
+}
+
+/// Order between a row's level and the next coarser one, NaN where there is none.
+double order_at(const std::vector<Level>& levels, double resolution) {
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    if (levels[i].resolution == resolution)
+      return local_order(levels[i - 1].h, levels[i - 1].mean, levels[i].h, levels[i].mean);
+  return std::nan("");
+}
+
+json row_json(const StudyResult& result, const Row& row) {
+  const Case& entry = result.study->cases[row.case_index];
+  json object = row.summary;
+  name_case(object, entry);
+  object["resolution"] = row.resolution;
+  object["seed"] = row.seed;
+  object["perturb"] = entry.perturb;
+  object["settings"] = entry.set;
+  object["scene_settings"] = entry.scene_set;
+  object["run"] = row.run.string();
+  if (!row.error.empty()) object["error"] = row.error;
+  json orders = json::object();
+  for (std::size_t i = 0; i < result.study->fits.size(); ++i) {
+    const std::string& quantity = result.study->fits[i].quantity;
+    const double order =
+        order_at(levels_of(result.rows, row.case_index, quantity), row.resolution);
+    if (!std::isfinite(order)) continue;
+    orders[quantity] = order;
+    if (i == 0) object["local_order"] = order;
+  }
+  if (!orders.empty()) object["local_orders"] = orders;
+  return object;
+}
+
+json fit_json(const StudyResult& result, const FitResult& fit) {
+  json object{{"quantity", fit.quantity},
+              {"slope", fit.line.slope},
+              {"r2", fit.line.r2},
+              {"levels", fit.resolutions.size()},
+              {"resolutions", fit.resolutions}};
+  name_case(object, result.study->cases[fit.case_index]);
+  return object;
+}
+
+json reference_json(const StudyResult& result, const ReferenceResult& reference) {
+  const GridConvergence& convergence = reference.convergence;
+  json object{{"quantity", reference.quantity},
+              {"formal_order", reference.formal_order},
+              {"resolutions", reference.resolutions},
+              {"asymptotic", convergence.asymptotic},
+              {"statement", convergence.statement}};
+  name_case(object, result.study->cases[reference.case_index]);
+  if (!reference.resolutions.empty()) object["value"] = reference.value;
+  if (convergence.asymptotic) {
+    object["order"] = convergence.order;
+    object["gci"] = convergence.gci;
+    object["safety_factor"] = convergence.safety_factor;
+    object["extrapolated"] = convergence.extrapolated;
+  }
+  return object;
+}
+
+json plot_json(const Plot& plot) {
+  json object{{"kind", plot.kind}, {"quantity", plot.quantity}};
+  if (!plot.title.empty()) object["title"] = plot.title;
+  if (!plot.setting.empty()) object["setting"] = plot.setting;
+  put(object, plot.selector);
+  put(object, "resolution", plot.resolution);
+  put(object, "slope", plot.slope);
+  return object;
+}
+
+json picture_json(const Picture& picture) {
+  json object{{"resolution", picture.resolution},
+              {"color", picture.color},
+              {"scale_displacement", picture.scale_displacement},
+              {"caption", picture.caption}};
+  put(object, picture.selector);
+  return object;
+}
+
+}  // namespace
+
+bool StudyResult::passed() const {
+  return !interrupted &&
+         std::none_of(claims.begin(), claims.end(),
+                      [](const ClaimResult& claim) { return claim.verdict == Verdict::fail; });
+}
+
+json study_json(const StudyResult& result) {
+  const Study& study = *result.study;
+  json object{{"name", study.name},
+              {"title", study.title},
+              {"question", study.question},
+              {"source", study.source},
+              {"paper_statement", study.paper_statement},
+              {"mode", study.full ? "full" : "quick"},
+              {"timing", study.timing},
+              {"verdict", result.passed() ? "pass" : "fail"}};
+  if (result.interrupted) object["interrupted"] = true;
+  for (const char* list : {"claims", "rows", "fits", "references", "plots", "pictures"})
+    object[list] = json::array();
+  for (const ClaimResult& claim : result.claims) object["claims"].push_back(claim_json(claim));
+  for (const Row& row : result.rows) object["rows"].push_back(row_json(result, row));
+  for (const FitResult& fit : result.fits) object["fits"].push_back(fit_json(result, fit));
+  for (const ReferenceResult& reference : result.references)
+    object["references"].push_back(reference_json(result, reference));
+  for (const Plot& plot : study.plots) object["plots"].push_back(plot_json(plot));
+  for (const Picture& picture : study.pictures)
+    object["pictures"].push_back(picture_json(picture));
+  return object;
+}
+
+void write_study(const StudyResult& result, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "tables");
+  for (const Table& table : tables_of(result)) {
+    scene::write_file(folder / "tables" / (table.name + ".csv"), table.csv());
+    scene::write_file(folder / "tables" / (table.name + ".md"), table.markdown());
+  }
+  scene::write_file(folder / "study.json", study_json(result).dump(1) + "\n");
+}
+
+}  // namespace concord::studies
