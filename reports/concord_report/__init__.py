@@ -1,0 +1,1 @@
+"""The report: reads the files of studies, draws, and never solves."""

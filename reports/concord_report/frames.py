@@ -1,0 +1,99 @@
+"""VTKHDF UnstructuredGrid frames and their series, read with h5py."""
+
+from pathlib import Path
+
+from .loading import InputError, number, read_json
+
+POINT_CELL = 1  # VTK_VERTEX: the frame of a particle method
+
+
+def series(folder):
+    """[(time, path)] of the frames in a run's folder, in time's order; [] when it has none."""
+    index = Path(folder) / "fields.hdf.series"
+    if not index.is_file():
+        return []
+    data = read_json(index)
+    try:
+        frames = [(float(f["time"]), index.parent / f["name"]) for f in data["files"]]
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{index}: expected \"files\": [{{\"name\", \"time\"}}]; {error!r}") from error
+    return sorted((f for f in frames if f[1].is_file()), key=lambda f: f[0])
+
+
+def at_time(frames, time=None):
+    """The frame nearest to `time` [s]; the last one when no time is given."""
+    if not frames:
+        return None
+    time = number(time)
+    return frames[-1] if time is None else min(frames, key=lambda f: abs(f[0] - time))
+
+
+def read(path):
+    """{points, connectivity, offsets, types, fields} as numpy arrays; InputError when broken."""
+    import h5py
+    try:
+        with h5py.File(path, "r") as file:
+            root = file["VTKHDF"]
+            kind = root.attrs["Type"]
+            kind = kind.decode() if isinstance(kind, bytes) else str(kind)
+            if kind != "UnstructuredGrid":
+                raise InputError(f"{path}: Type is {kind}, expected UnstructuredGrid")
+            points = root["Points"][()].reshape(-1, 3)
+            fields = {name: data[()] for name, data in root.get("PointData", {}).items()}
+            mesh = {key.lower(): root[key][()] for key in ("Connectivity", "Offsets", "Types")}
+    except (OSError, KeyError, ValueError, TypeError) as error:
+        raise InputError(f"{path}: not a readable VTKHDF frame: {error}") from error
+    for name, data in fields.items():
+        if len(data) != len(points):
+            raise InputError(f"{path}: PointData/{name} has {len(data)} values for {len(points)} points")
+    return {"points": points, "fields": fields, **mesh}
+
+
+def values(frame, color):
+    """The point field to colour by, as one number a point: vectors by their length, components by
+    "displacement_x". None when the frame lacks it."""
+    import numpy as np
+    from .quantities import split_component
+    base, component = split_component(color)
+    if color in frame["fields"]:
+        base, component = color, None
+    data = frame["fields"].get(base)
+    if data is None:
+        return None
+    if data.ndim == 1 or data.shape[1] == 1:
+        return np.asarray(data, float).reshape(-1)
+    return np.linalg.norm(data, axis=1) if component is None else np.asarray(data[:, component], float)
+
+
+def deformed(frame, scale):
+    """(positions with the displacement exaggerated by `scale`, reference positions or None)."""
+    displacement = frame["fields"].get("displacement")
+    if displacement is None:
+        return frame["points"], None
+    reference = frame["points"] - displacement
+    return reference + scale * displacement, reference
+
+
+def is_particles(frame):
+    return len(frame["types"]) == 0 or bool((frame["types"] == POINT_CELL).all())
+
+
+def facts(path, color, scale):
+    """What the choice of colours and view needs: range, bounds, flatness, fields, or the reason
+    why there is no picture."""
+    import numpy as np
+    frame = read(path)
+    data = values(frame, color)
+    if data is None:
+        return {"missing": f"the frame has no point field '{color}'; it has: "
+                           + (", ".join(sorted(frame["fields"])) or "none")}
+    good = data[np.isfinite(data)]
+    positions, _ = deformed(frame, scale)
+    good_positions = positions[np.isfinite(positions).all(axis=1)]
+    if not len(good) or not len(good_positions):
+        return {"missing": f"every value of '{color}' is NaN"}
+    low, high = good_positions.min(axis=0), good_positions.max(axis=0)
+    flat = bool(high[2] - low[2] < 1e-9 * max((high - low).max(), 1e-300))
+    return {"range": [float(good.min()), float(good.max())], "low": low.tolist(),
+            "high": high.tolist(), "flat": flat, "points": len(positions),
+            "particles": is_particles(frame), "nan": int(len(data) - len(good))}

@@ -1,0 +1,90 @@
+"""Time series from the runs' history.csv."""
+
+import csv
+
+from .cases import chosen
+from .digits import pretty
+from .loading import InputError, number
+
+MOST_CURVES = 12  # beyond that only the finest level of each case is drawn
+MOST_POINTS = 600  # of a drawn curve; see thinned()
+
+
+def read_history(path, column):
+    """(times, values) of one column; InputError for a file that is not a table of numbers.
+    None when the column is not there."""
+    try:
+        with open(path, newline="", encoding="utf-8") as stream:
+            lines = csv.reader(stream)
+            header = [name.strip() for name in next(lines, [])]
+            time, value = _columns(header, column)
+            if value is None:
+                return None
+            out = []
+            for line in lines:
+                if len(line) == len(header):  # a last line cut short is left out
+                    out.append((float(line[time]), float(line[value])))
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        raise InputError(f"{path}: not a table of numbers with one header line: {error}") from error
+    return [p[0] for p in out], [p[1] for p in out]
+
+
+def _columns(header, column):
+    time = header.index("t_s") if "t_s" in header else 0
+    wanted = column.split(".")[-1]
+    for position, name in enumerate(header):
+        if name == wanted or name.startswith(wanted + "_") and name.count("_") - wanted.count("_") == 1:
+            return time, position
+    return time, None
+
+
+def thinned(x, y, most=MOST_POINTS):
+    """At most `most` points, keeping the smallest and largest value of every stretch."""
+    if len(x) <= most:
+        return x, y
+    size = 2 * len(x) / most
+    keep = {0, len(x) - 1}
+    for k in range(most // 2):
+        stretch = range(int(k * size), min(len(x), max(int((k + 1) * size), int(k * size) + 1)))
+        if stretch:
+            keep.add(min(stretch, key=lambda i: y[i]))
+            keep.add(max(stretch, key=lambda i: y[i]))
+    order = sorted(keep)
+    return [x[i] for i in order], [y[i] for i in order]
+
+
+def _series(study, row, column):
+    if not row.get("run"):
+        return None
+    path = study.folder / row["run"] / "history.csv"
+    if not path.is_file():
+        return None
+    found = read_history(path, column)
+    if not found or not found[0]:
+        return None
+    finite = [(t, v) for t, v in zip(*found) if number(v) is not None]
+    return thinned([p[0] for p in finite], [p[1] for p in finite]) if finite else None
+
+
+def history_curves(study, cases, plot):
+    """(curves, note): one a case and level, first seed; or (text, "") when there are none."""
+    wanted = number(plot.get("resolution"))
+    picked = [(case, level) for case in chosen(cases, plot) for level in case.levels
+              if wanted is None or level.resolution == wanted]
+    note = ""
+    if len(picked) > MOST_CURVES:
+        picked = [(case, case.levels[-1]) for case in chosen(cases, plot)]
+        note = "Finest level of each case."
+    curves = []
+    for case, level in picked:
+        rank = case.levels[::-1].index(level)  # 0 for the finest
+        series = next(filter(None, (_series(study, r, plot["quantity"]) for r in level.rows)), None)
+        if series:
+            several = len({id(l) for c, l in picked if c is case}) > 1
+            label = f"{case.label}, L/{pretty(level.resolution)}" if several else case.label
+            curves.append({"case": case.index, "method": case.method, "style": case.style,
+                           "label": label, "x": series[0], "y": series[1], "rank": rank,
+                           "low": None, "high": None, "slope": None})
+    if not curves:
+        return f"no history.csv of this report has the column {plot['quantity']}", ""
+    return curves, note

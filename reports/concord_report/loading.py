@@ -1,0 +1,137 @@
+"""Reads study.json files. Missing optional fields are fine; a broken file is an InputError."""
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+
+class InputError(Exception):
+    """A file that cannot be used. The message says which, where, what was found, what is allowed."""
+
+
+@dataclass
+class Study:
+    """One study as its study.json tells it. `folder` is where the runs' paths start."""
+
+    name: str
+    folder: Path
+    data: dict
+    claims: list = field(default_factory=list)
+    rows: list = field(default_factory=list)
+
+    @property
+    def title(self):
+        return self.data.get("title") or self.name.replace("_", " ").capitalize()
+
+    def listed(self, key):
+        return self.data.get(key) or []
+
+
+LISTS = ("claims", "rows", "fits", "references", "plots", "pictures")
+TEXTS = ("name", "title", "question", "source", "paper_statement", "mode", "verdict")
+VERDICTS = ("pass", "fail")
+
+
+def number(value):
+    """The value as a finite float, or None: null, absent, text, NaN and infinity are all missing."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return None
+    return float(value) if math.isfinite(value) else None
+
+
+def dig(row, path):
+    """row["errors"]["displacement_l2"] for "errors.displacement_l2"; None where it is missing."""
+    if path in row:
+        return row[path]
+    node = row
+    for key in path.split("."):
+        if not isinstance(node, dict) or key not in node:
+            return None
+        node = node[key]
+    return node
+
+
+def read_json(path):
+    """The parsed file; InputError with line and column when it is not JSON."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from error
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputError(
+            f"{path}:{error.lineno}:{error.colno}: not JSON ({error.msg}); "
+            "was the run cut short while writing? Run the study again."
+        ) from error
+
+
+def _check(path, data):
+    if not isinstance(data, dict):
+        raise InputError(f"{path}: found {type(data).__name__}, expected an object")
+    if not isinstance(data.get("name"), str) or not data["name"]:
+        raise InputError(f"{path}: key 'name': expected the study's name as text")
+    for key in TEXTS:
+        if data.get(key) is not None and not isinstance(data[key], str):
+            raise InputError(f"{path}: key '{key}': found {data[key]!r}, expected text")
+    for key in LISTS:
+        value = data.get(key)
+        if value is None:
+            continue
+        if not isinstance(value, list):
+            raise InputError(f"{path}: key '{key}': found {type(value).__name__}, expected a list")
+        for position, entry in enumerate(value):
+            if not isinstance(entry, dict):
+                raise InputError(f"{path}: {key}[{position}]: found {entry!r}, expected an object")
+    for position, claim in enumerate(data.get("claims") or []):
+        for key in ("id", "statement", "verdict"):
+            if not isinstance(claim.get(key), str) or not claim[key]:
+                raise InputError(f"{path}: claims[{position}]: key '{key}': found "
+                                 f"{claim.get(key)!r}, expected text")
+    for position, row in enumerate(data.get("rows") or []):
+        if not isinstance(row.get("method"), str):
+            raise InputError(f"{path}: rows[{position}]: key 'method': found "
+                             f"{row.get('method')!r}, expected text")
+
+
+def load_study(path):
+    """The study in `path` (a study.json)."""
+    data = read_json(path)
+    _check(path, data)
+    return Study(data["name"], path.parent, data, data.get("claims") or [], data.get("rows") or [])
+
+
+def load_studies(folder):
+    """(studies sorted by title, warnings) from every sub-folder of `folder` with a study.json."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder; expected one sub-folder per study")
+    if (folder / "study.json").is_file():
+        return [load_study(folder / "study.json")], []
+    studies, warnings = [], []
+    for sub in sorted(p for p in folder.iterdir() if p.is_dir() and not p.name.startswith(".")):
+        if (sub / "study.json").is_file():
+            studies.append(load_study(sub / "study.json"))
+        elif any(sub.glob("*/summary.json")) or (sub / "tables").is_dir():
+            warnings.append(f"{sub.name}: no study.json, so the study did not finish; left out")
+    if not studies:
+        raise InputError(f"{folder}: no sub-folder holds a study.json; run a study first")
+    names = [s.name for s in studies]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{folder}: two studies are called '{name}'")
+    return studies, warnings
+
+
+def verdict(claim):
+    """"pass", "fail", or "open" for a claim that this run did not judge."""
+    return claim["verdict"] if claim["verdict"] in VERDICTS else "open"
+
+
+def study_verdict(study):
+    """The study's own word, except that a failed claim is never painted over."""
+    verdicts = [verdict(c) for c in study.claims]
+    if "fail" in verdicts or study.data.get("verdict") == "fail":
+        return "fail"
+    return "pass" if "pass" in verdicts else "open"

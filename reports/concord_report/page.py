@@ -1,0 +1,132 @@
+"""Puts a page together from studies: one self-contained HTML file."""
+
+import re
+from datetime import datetime, timezone
+from pathlib import Path
+
+from . import outputs, pictures, plots, tables
+from .cases import cases_of, variant_text
+from .loading import study_verdict, verdict
+from .palette import css_variables, method_name, swatch
+
+TEMPLATES = Path(__file__).resolve().parent.parent / "template"
+WORDS = {"pass": "pass", "fail": "fail", "open": "not judged"}
+SYMBOLS = {"pass": "✓", "fail": "✗", "open": "○"}
+
+
+def slug(name):
+    """A name that can be an id."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") or "study"
+
+
+def _claim_view(claim):
+    return {"id": claim["id"], "statement": claim["statement"], "source": claim.get("source") or "",
+            "source_value": tables.source_text(claim), "note": claim.get("note") or "",
+            "measured": tables.measured_text(claim.get("measured"), claim.get("unit")),
+            "bound": tables.bound_text(claim), "verdict": verdict(claim)}
+
+
+def _plots(study, cases, store, warnings):
+    out = []
+    for number, (plot, spec) in enumerate(plots.plot_specs(study, cases)):
+        if isinstance(spec, str):
+            what = f"{plot.get('kind')} plot of {plot.get('quantity')}"
+            warnings.append(f"{study.name}: no {what}: {spec}")
+            out.append({"kind": "missing", "title": f"No {what}", "why": spec})
+            continue
+        drawing = plots.drawn(spec, f"{slug(study.name)}-p{number}", store)
+        out.append({"kind": plot["kind"], "title": spec["title"], "svg": drawing,
+                    "note": spec.get("note", "")})
+    return out
+
+
+def _pictures(jobs, name):
+    """Pictures by shared scale, each group with its colour bar; those that are missing apart."""
+    groups, missing = {}, []
+    for job in jobs:
+        if "missing" in job:
+            missing.append({"label": job.get("label") or name, "why": job["missing"]})
+            continue
+        case, parts = pictures.caption(job)
+        bar = pictures.bar(job)
+        group = groups.setdefault(job["group"], {"bar": bar, "pictures": []})
+        told = variant_text(job["picture"].get("caption") or "")
+        group["pictures"].append({
+            "uri": pictures.data_uri(job), "width": job["width"], "height": job["height"],
+            "caption": told, "parts": parts, "swatch": swatch(case.method, case.style),
+            "alt": f"{case.label}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
+                   f"{bar['unit']}".strip()})
+    return list(groups.values()), missing
+
+
+def _tables(study, cases):
+    def label(entry):
+        return " ".join(filter(None, (method_name(entry.get("method") or ""),
+                                      variant_text(entry.get("variant") or ""))))
+    made = [tables.convergence_table(study, cases, q) for q in tables.quantities_with_levels(study)]
+    made += [tables.results_table(study, cases), tables.invariants_table(cases),
+             tables.references_table(study, label)]
+    return [t for t in made if t]
+
+
+def _study_view(study, cases, jobs, store, warnings):
+    drawn = _plots(study, cases, store, warnings)
+    groups, missing = _pictures(jobs, study.title)
+    shown = {int(k) for p in drawn if "svg" in p for k in re.findall(r'data-case="(\d+)"', p["svg"])}
+    return {
+        "id": slug(study.name), "name": study.name, "title": study.title,
+        "question": study.data.get("question") or "", "source": study.data.get("source") or "",
+        "paper_statement": study.data.get("paper_statement") or "", "mode": study.data.get("mode") or "",
+        "verdict": study_verdict(study), "counts": outputs.count([study]),
+        "claims": [_claim_view(c) for c in study.claims], "plots": drawn,
+        "key": [{"case": c.index, "label": c.label, "swatch": swatch(c.method, c.style)}
+                for c in cases if c.index in shown],
+        "groups": groups, "missing": missing, "tables": _tables(study, cases),
+        "runs": tables.runs_table(cases), "run_count": len(study.rows),
+        "fem": any(c.method == "fem" for c in cases),
+    }
+
+
+def _failed_runs(study, cases):
+    """A remark a run that did not reach its end."""
+    out = []
+    for case in cases:
+        for level in case.levels:
+            for row in level.rows:
+                if row.get("error"):
+                    seed = f", seed {row['seed']}" if row.get("seed") is not None else ""
+                    out.append(f"{study.name}: {case.label} at resolution {level.resolution:g}{seed} "
+                               f"failed: {row['error']}")
+    return out
+
+
+def _newest(studies):
+    times = [(s.folder / "study.json").stat().st_mtime for s in studies]
+    return datetime.fromtimestamp(max(times), timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+
+
+def build(studies, store, warnings):
+    """The page as text. Adds to `warnings` what could not be shown."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    ordered = [(s, cases_of(s)) for s in studies]
+    for study, cases in ordered:
+        warnings += _failed_runs(study, cases)
+    jobs = {s.name: pictures.prepare(s, c, store, warnings) for s, c in ordered}
+    pictures.render_missing([j for js in jobs.values() for j in js], store, warnings)
+    views = [_study_view(s, c, jobs[s.name], store, warnings) for s, c in ordered]
+    for view in views:
+        same = [v for v in views if v["id"] == view["id"]]
+        for number, twin in enumerate(same[1:], 2):
+            twin["id"] += f"-{number}"
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True,
+                              lstrip_blocks=True, undefined=StrictUndefined)
+    rows = [r for s in studies for r in s.rows]
+    return environment.get_template("page.html.j2").render(
+        headline=outputs.headline(studies), counts=outputs.count(studies), studies=views,
+        verdict="fail" if any(v["verdict"] == "fail" for v in views) else
+                "pass" if any(v["verdict"] == "pass" for v in views) else "open",
+        modes=sorted({v["mode"] for v in views if v["mode"]}), when=_newest(studies),
+        machine=tables.machine_facts(rows), warnings=warnings, words=WORDS, symbols=SYMBOLS,
+        fem=any(v["fem"] for v in views), day=css_variables(False), night=css_variables(True),
+        style=(TEMPLATES / "style.css").read_text(encoding="utf-8"),
+        script=(TEMPLATES / "page.js").read_text(encoding="utf-8"))

@@ -1,0 +1,77 @@
+"""What a quantity is called in print, and its unit."""
+
+import re
+
+from .cases import GREEK
+
+UNITS = (  # the ends of names, as in history.csv and summary.json
+    ("_kg_m2_s", "kg m²/s"), ("_kg_m_s", "kg m/s"), ("_m_s2", "m/s²"), ("_rad_s2", "rad/s²"),
+    ("_rad_s", "rad/s"), ("_m_s", "m/s"), ("_m2", "m²"), ("_m3", "m³"), ("_Nm", "N m"),
+    ("_MPa", "MPa"), ("_kPa", "kPa"), ("_Pa", "Pa"), ("_mm", "mm"), ("_ms", "ms"), ("_kg", "kg"),
+    ("_J", "J"), ("_N", "N"), ("_W", "W"), ("_K", "K"), ("_m", "m"), ("_s", "s"),
+)
+
+NAMES = {  # name: (text, unit); norms.hpp defines the errors
+    "displacement_l2": ("relative L2 error of displacement", ""),
+    "displacement_max": ("largest displacement error", "m"),
+    "velocity_l2": ("relative L2 error of velocity", ""),
+    "gradient_l2": ("relative L2 error of displacement gradient", ""),
+    "displacement_l2_common": ("relative L2 error of displacement, common points", ""),
+    "gradient_l2_common": ("relative L2 error of displacement gradient, common points", ""),
+    "linear_momentum_drift": ("drift of linear momentum", ""),
+    "angular_momentum_drift": ("drift of angular momentum", ""),
+    "energy_drift": ("drift of energy", ""),
+    "wall_s": ("run time of the time loop or solve", "s"),
+    "setup_s": ("set-up time", "s"),
+    "ns_per_particle_step": ("time a particle a step", "ns"),
+    "peak_rss_mb": ("peak memory", "MB"),
+    "h": ("mean spacing h", "m"),
+    "t_s": ("time", "s"),
+    "perturb": ("perturbation of the particles", "h"),
+    "dt": ("time step", "s"),
+}
+
+FIELDS = {  # point fields of the frames: (text, unit)
+    "displacement": ("displacement", "m"),
+    "displacement_error": ("displacement error", "m"),
+    "velocity": ("velocity", "m/s"),
+    "von_mises": ("von Mises stress", "Pa"),
+    "pressure": ("pressure", "Pa"),
+    "plastic_strain": ("equivalent plastic strain", ""),
+    "energy_density": ("strain energy density", "J/m³"),
+    "damage": ("damage", ""),
+}
+
+
+def name_and_unit(path):
+    """("tip z", "m") for "quantities.tip_z_m"; the unit is empty when there is none or unknown."""
+    last = path.split(".")[-1]
+    if last in NAMES:
+        return NAMES[last]
+    for end, unit in UNITS:
+        if last.endswith(end) and len(last) > len(end):
+            return _words(last[: -len(end)]), unit
+    return _words(last), ""
+
+
+def _words(name):
+    return " ".join(GREEK.get(word, word) for word in re.split(r"[_\s]+", name) if word)
+
+
+def axis(path):
+    """"tip z [m]": the label of an axis or a column."""
+    name, unit = name_and_unit(path)
+    return f"{name} [{unit}]" if unit else name
+
+
+def field_name(color):
+    """(text, unit) of a point field; "displacement_z" is the component of "displacement"."""
+    base, component = split_component(color)
+    name, unit = FIELDS.get(base, (_words(base), ""))
+    return (f"{name}, {'xyz'[component]}" if component is not None else name), unit
+
+
+def split_component(color):
+    """("displacement", 2) for "displacement_z" and (color, None) for a plain name."""
+    match = re.fullmatch(r"(displacement|velocity)_([xyz])", color)
+    return (match[1], "xyz".index(match[2])) if match else (color, None)

@@ -1,0 +1,228 @@
+"""The tables of a study, as plain data for the template: captions, columns, cells that line up."""
+
+import re
+
+from .cases import fit_of, local_orders
+from .digits import DASH, SUPERSCRIPTS, column, pretty
+from .loading import dig, number
+from .palette import swatch
+from .quantities import axis, name_and_unit
+
+
+def text_column(label, texts, head=False, marks=None):
+    """A column of words; `head` makes its cells row headers, `marks` are drawings before them."""
+    marks = marks or [""] * len(texts)
+    cells = [{"text": t or DASH, "value": t or "", "mark": m} for t, m in zip(texts, marks)]
+    return {"label": label, "kind": "head" if head else "text", "cells": cells}
+
+
+def number_column(label, values, digits=3, texts=None):
+    """A column of numbers in one notation. None when every value is missing."""
+    if all(number(v) is None for v in values):
+        return None
+    texts = texts or column(values, digits)
+    cells = [{"text": t, "value": number(v), "mark": ""} for t, v in zip(texts, values)]
+    return {"label": label, "kind": "number", "cells": cells}
+
+
+def table(caption, columns, note=""):
+    """Columns that are None are left out: a column with nothing in it tells nothing."""
+    columns = [c for c in columns if c]
+    return {"caption": caption, "columns": columns, "note": note,
+            "rows": list(zip(*[c["cells"] for c in columns]))}
+
+
+def spread_texts(spreads):
+    """"min to max" a cell, both ends in one notation; a dash with fewer than two seeds."""
+    flat = [v for s in spreads if s for v in s]
+    texts = iter(column(flat, 3)) if flat else iter(())
+    return [f"{next(texts).strip()} to {next(texts)}" if s else DASH for s in spreads]
+
+
+def quantities_with_levels(study):
+    """Paths that have a fit or a convergence plot, in the study's order."""
+    out = []
+    for entry in study.listed("fits") + [p for p in study.listed("plots") if p.get("kind") == "convergence"]:
+        if entry.get("quantity") and entry["quantity"] not in out:
+            out.append(entry["quantity"])
+    return out
+
+
+def _case_column(pairs):
+    return text_column("case", [c.label for c, _ in pairs], head=True,
+                       marks=[swatch(c.method, c.style) for c, _ in pairs])
+
+
+def convergence_table(study, cases, path):
+    """h, unknowns, error, spread over seeds, local and fitted order, cost: a line a level."""
+    pairs = [(c, l) for c in cases if c.has(path) for l in c.levels]
+    if not pairs:
+        return None
+    first = (quantities_with_levels(study) or [path])[0]
+    orders = {c.index: local_orders(c, path, first) for c in cases if c.has(path)}
+    name, unit = name_and_unit(path)
+    spreads = [l.spread(path) for _, l in pairs]
+    seeds = sorted({len(l.rows) for _, l in pairs})
+    fits = [fit_of(study, c, path) if l is c.levels[-1] else None for c, l in pairs]
+    return table(
+        f"Convergence: {axis(path)}",
+        [_case_column(pairs),
+         number_column("h [m]", [l.h for _, l in pairs], 3),
+         number_column("unknowns", [_typical(l, "unknowns") for _, l in pairs]),
+         number_column(f"error [{unit}]" if unit else "error" if path.startswith("errors.") else name,
+                       [l.mean(path) for _, l in pairs]),
+         number_column("least to most", [s and s[1] for s in spreads], texts=spread_texts(spreads)),
+         number_column("seeds", [len(l.rows) for _, l in pairs]) if seeds != [1] else None,
+         number_column("local order", [orders[c.index][c.levels.index(l)] for c, l in pairs], 3),
+         number_column("fitted order", [f and f.get("slope") for f in fits], 3),
+         number_column("R²", [f and f.get("r2") for f in fits], 4),
+         number_column("run time [s]", [l.mean("wall_s") for _, l in pairs], 3),
+         number_column("set-up [s]", [l.mean("setup_s") for _, l in pairs], 3),
+         number_column("a particle a step [ns]", [l.mean("ns_per_particle_step") for _, l in pairs], 3),
+         number_column("memory [MB]", [l.mean("peak_rss_mb") for _, l in pairs], 3)],
+        "Values are means over the seeds; “least to most” is the spread between them. The local "
+        "order is taken against the line before; the fitted order stands on the finest line of its case."
+        if seeds != [1] else
+        "The local order is taken against the line before; the fitted order stands on the finest "
+        "line of its case.")
+
+
+def _typical(level, path):
+    value = level.mean(path)
+    return None if value is None else round(value)
+
+
+def results_table(study, cases):
+    """What claims ask of single runs and no convergence table shows: mean and spread a level."""
+    shown = quantities_with_levels(study)
+    paths = []
+    for claim in study.claims:
+        path = claim.get("quantity")
+        if path and path not in shown and path not in paths:
+            paths.append(path)
+    if not paths and not shown:
+        found = {f"{group}.{key}" for c in cases for r in c.rows for group in ("errors", "quantities")
+                 for key in (r.get(group) or {})}
+        paths = sorted(found)[:8]
+    pairs = [(c, l) for c in cases for l in c.levels if any(l.values(p) for p in paths)]
+    if not pairs:
+        return None
+    columns = [_case_column(pairs), number_column("h [m]", [l.h for _, l in pairs]),
+               number_column("seeds", [len(l.rows) for _, l in pairs])]
+    for path in paths:
+        spreads = [l.spread(path) for _, l in pairs]
+        columns.append(number_column(axis(path), [l.mean(path) for _, l in pairs]))
+        if any(s and s[0] != s[1] for s in spreads):
+            columns.append(number_column("largest", [max(l.values(path), default=None) for _, l in pairs]))
+    return table("Results", columns, "Means over the seeds, and the largest of them.")
+
+
+DRIFTS = ("linear_momentum_drift", "angular_momentum_drift", "energy_drift")
+
+
+def invariants_table(cases):
+    """Largest drift over the seeds on the finest level of each case."""
+    pairs = [(c, c.levels[-1]) for c in cases if c.levels]
+    names = sorted({k for c, l in pairs for r in l.rows for k in (r.get("invariants") or {})},
+                   key=lambda n: (n not in DRIFTS, n))
+    pairs = [(c, l) for c, l in pairs if any(l.values(f"invariants.{n}") for n in names)]
+    if not pairs:
+        return None
+    columns = [_case_column(pairs), number_column("h [m]", [l.h for _, l in pairs])]
+    for name in names:
+        worst = [max(map(abs, l.values(f"invariants.{name}")), default=None) for _, l in pairs]
+        columns.append(number_column(axis(name), worst, 2))
+    return table("Conservation on the finest level", columns, "Largest magnitude over the seeds.")
+
+
+def references_table(study, label):
+    """References with their own discretisation error. `label(entry)` names the case."""
+    entries = study.listed("references")
+    if not entries:
+        return None
+    return table(
+        "References and their own discretisation error",
+        [text_column("case", [label(e) for e in entries], head=True),
+         text_column("quantity", [axis(e.get("quantity") or "") for e in entries]),
+         number_column("value", [e.get("value") for e in entries], 4),
+         number_column("observed order", [e.get("order") for e in entries]),
+         number_column("GCI, relative", [e.get("gci") for e in entries], 2),
+         number_column("safety factor", [e.get("safety") for e in entries]),
+         text_column("in words", [e.get("text") or "" for e in entries])],
+        "GCI: grid convergence index from three levels, with the safety factor of Roache’s rule.")
+
+
+def runs_table(cases):
+    """Every run, one a line: for whoever wants to check the means."""
+    rows = [(c, r) for c in cases for r in c.rows]
+    if not rows:
+        return None
+    errors = sorted({k for _, r in rows for k in (r.get("errors") or {})})[:4]
+    def numbers(label, path, digits=3): return number_column(label, [dig(r, path) for _, r in rows], digits)
+    return table(
+        "Every run",
+        [text_column("case", [c.label for c, _ in rows], head=True),
+         numbers("resolution", "resolution"), numbers("seed", "seed"), numbers("particles", "particles"),
+         numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
+         numbers("end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
+         numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
+         numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
+         text_column("remark", [str(r.get("error") or "") for _, r in rows])
+         if any(r.get("error") for _, r in rows) else None])
+
+
+MACHINE = (("processor", "machine.cpu"), ("SIMD", "machine.simd"), ("threads", "machine.threads"),
+           ("version", "build.version"), ("commit", "build.commit"), ("compiler", "build.compiler"),
+           ("flags", "build.flags"))
+
+
+def machine_facts(rows):
+    """[(what, [values])] over all rows; more than one value means that runs came from several."""
+    out = []
+    for label, path in MACHINE:
+        values = []
+        for row in rows:
+            value = dig(row, path)
+            if value not in (None, "") and str(value) not in values:
+                values.append(str(value))
+        if values:
+            out.append((label, values))
+    return out
+
+
+def measured_text(value, unit=""):
+    """A claim's number with its unit, a dash when there is none."""
+    out = pretty(value, 3)
+    return out if out == DASH or unit in ("", "1", None) else f"{out} {unit}"
+
+
+def bound_text(claim):
+    """"≥ 1.8", "1.8 to 2.6" or the study's own words."""
+    bound, unit = claim.get("bound"), claim.get("unit") or ""
+    if isinstance(bound, list) and len(bound) == 2:
+        bound = dict(zip(("min", "max"), bound))
+    if isinstance(bound, dict):
+        low, high = number(bound.get("min")), number(bound.get("max"))
+        if low is not None and high is not None:
+            return f"{measured_text(low)} to {measured_text(high, unit)}"
+        if low is not None:
+            return f"≥ {measured_text(low, unit)}"
+        return f"≤ {measured_text(high, unit)}" if high is not None else DASH
+    if number(bound) is not None:
+        return measured_text(bound, unit)
+    return _typeset(str(bound)) if bound else DASH
+
+
+def source_text(claim):
+    """The source's value in the source's own words."""
+    value = claim.get("source_value")
+    return measured_text(value) if number(value) is not None else _typeset(str(value or DASH))
+
+
+def _typeset(words):
+    """">= 1e-10 N" -> "≥ 10⁻¹⁰ N": as the numbers beside it are set."""
+    words = words.replace(">=", "≥").replace("<=", "≤")
+    def power(match):
+        exponent = str(int(match[2])).translate(SUPERSCRIPTS)
+        return f"10{exponent}" if match[1] == "1" else f"{match[1]}×10{exponent}"
+    return re.sub(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?\d+)\b", power, words)

@@ -1,0 +1,73 @@
+// Sorts tables, lights up a curve, and marks where the reader is. The page is whole without it.
+(function () {
+  "use strict";
+
+  function value(cell) {
+    if (cell.dataset.v !== undefined) return parseFloat(cell.dataset.v);
+    return cell.classList.contains("number") ? null : cell.textContent.trim();
+  }
+
+  // Missing values stay at the end in either direction.
+  function compare(a, b, sign) {
+    if (a === null || b === null) return (a === null) - (b === null);
+    if (typeof a === "number" && typeof b === "number") return sign * (a - b);
+    return sign * String(a).localeCompare(String(b), "en", { numeric: true });
+  }
+
+  function sort(table, head) {
+    var column = Array.prototype.indexOf.call(head.parentNode.children, head);
+    var sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
+    var body = table.tBodies[0];
+    var rows = Array.prototype.map.call(body.rows, function (row) {
+      return { row: row, value: value(row.cells[column]) };
+    });
+    rows.sort(function (a, b) { return compare(a.value, b.value, sign); });
+    rows.forEach(function (entry) { body.appendChild(entry.row); });
+    head.parentNode.querySelectorAll("th").forEach(function (th) { th.removeAttribute("aria-sort"); });
+    head.setAttribute("aria-sort", sign === 1 ? "ascending" : "descending");
+  }
+
+  document.querySelectorAll("table.sortable").forEach(function (table) {
+    table.querySelectorAll("thead th").forEach(function (head) {
+      var button = document.createElement("button");
+      button.type = "button";
+      while (head.firstChild) button.appendChild(head.firstChild);
+      head.appendChild(button);
+      button.addEventListener("click", function () { sort(table, head); });
+    });
+  });
+
+  document.querySelectorAll(".charts").forEach(function (charts) {
+    function pick(name) {
+      charts.classList.toggle("picking", name !== null);
+      charts.querySelectorAll("[data-case]").forEach(function (part) {
+        part.classList.toggle("on", part.dataset.case === name);
+      });
+    }
+    charts.querySelectorAll("[data-case]").forEach(function (part) {
+      var name = part.dataset.case;
+      if (!charts.querySelector('.key [data-case="' + name + '"]')) return;
+      if (part.tagName === "LI") part.tabIndex = 0;
+      ["mouseenter", "focus"].forEach(function (event) {
+        part.addEventListener(event, function () { pick(name); });
+      });
+      ["mouseleave", "blur"].forEach(function (event) {
+        part.addEventListener(event, function () { pick(null); });
+      });
+    });
+  });
+
+  if ("IntersectionObserver" in window) {
+    var links = {};
+    document.querySelectorAll(".contents a").forEach(function (a) { links[a.hash.slice(1)] = a; });
+    var watch = new IntersectionObserver(function (entries) {
+      entries.forEach(function (entry) {
+        if (!entry.isIntersecting) return;
+        Object.keys(links).forEach(function (id) {
+          links[id].classList.toggle("here", id === entry.target.id);
+        });
+      });
+    }, { rootMargin: "-10% 0px -80% 0px" });
+    document.querySelectorAll("main > section").forEach(function (s) { watch.observe(s); });
+  }
+})();
