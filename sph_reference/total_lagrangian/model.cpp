@@ -1,0 +1,153 @@
+#include "sph_reference/total_lagrangian/model.hpp"
+
+#include "sph_reference/total_lagrangian/rows.hpp"
+
+#include <algorithm>
+
+namespace concord::sph {
+namespace {
+
+/// Particles in a range dealt to a thread: whole groups of stress_width, several ranges a thread from a few thousand particles on.
+constexpr std::size_t range = 64 * stress_width;
+
+template <class Loop>
+void for_ranges(std::size_t n, const Executor& executor, const Loop& loop) {
+  executor.for_each((n + range - 1) / range,
+                    [&](std::size_t k) { loop(k, k * range, std::min(n, (k + 1) * range)); });
+}
+
+template <int Dim, bool Potential>
+Index stresses_by_law(const particle::KernelMaterial& material, const Neighbours& rows, std::size_t first,
+                      std::size_t last, const State& s) {
+  return particle::with_law(material.law, [&](auto law) {
+    return stresses<Dim, decltype(law)::value, Potential>(rows, first, last, material.lame, s);
+  });
+}
+
+template <int Dim, class Penalty>
+void forces_by_viscosity(const Neighbours& rows, const Viscosity& eta, bool viscous, const State& s, std::size_t n,
+                         const Executor& executor) {
+  for_ranges(n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
+    if (viscous) forces<Dim, Penalty, true>(rows, first, last, eta, s);
+    else forces<Dim, Penalty, false>(rows, first, last, eta, s);
+  });
+}
+
+}  // namespace
+
+TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& problem, const TlsphOptions& options,
+                                       const Executor& executor)
+    : ForceModel(body),
+      m_options(options),
+      m_kernel(options.kernel, body.dim, options.support * body.h),
+      m_law(problem.material, problem.dimension),
+      m_material(particle::kernel_material(problem)),
+      m_wave_speed(problem.material.longitudinal_wave_speed()),
+      m_rho0(problem.material.rho0),
+      m_rows(find_neighbours(body, m_kernel, options.psi * problem.material.E, executor)),
+      m_records(static_cast<std::size_t>(body.n) * 2 * body.dim * body.stride, 0.0),
+      m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
+
+void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
+                                const Executor& executor) {
+  if (m_body.dim == 3) forces_of<3>(u, v, f, executor);
+  else forces_of<2>(u, v, f, executor);
+}
+
+template <int Dim>
+void TotalLagrangianSph::forces_of(std::span<const double> u, std::span<const double> v, std::span<double> f,
+                                   const Executor& executor) {
+  const std::size_t n = m_body.n;
+  const State s{m_body.X.data(), u.data(), v.data(), m_body.V.data(), m_records.data(), f.data()};
+  const bool potential = penalised() && m_options.penalty == PenaltyForm::potential;
+  if (potential) update_gradients(u, executor);
+  for_ranges(n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
+    m_bad[k] = potential ? stresses_by_law<Dim, true>(m_material, m_rows, first, last, s)
+                         : stresses_by_law<Dim, false>(m_material, m_rows, first, last, s);
+  });
+  for (const Index a : m_bad) {
+    if (a >= 0) throw particle::BadState{"det F", a};
+  }
+  const double h = m_kernel.smoothing_length();
+  const Viscosity eta{m_options.alpha * m_rho0 * m_wave_speed * h, m_options.beta * m_rho0 * h * h, 0.01 * h * h};
+  if (potential) {
+    forces_by_viscosity<Dim, AfterPotential>(m_rows, eta, viscous(), s, n, executor);
+  } else if (penalised()) {
+    forces_by_viscosity<Dim, Ganzenmueller>(m_rows, eta, viscous(), s, n, executor);
+  } else {
+    forces_by_viscosity<Dim, WithoutPenalty>(m_rows, eta, viscous(), s, n, executor);
+  }
+}
+
+void TotalLagrangianSph::update_gradients(std::span<const double> u, const Executor& executor) {
+  const State s{m_body.X.data(), u.data(), nullptr, m_body.V.data(), m_records.data(), nullptr};
+  for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
+    if (m_body.dim == 3) sph::gradients<3>(m_rows, first, last, s);
+    else sph::gradients<2>(m_rows, first, last, s);
+  });
+}
+
+/// H_a as the records hold it, without out-of-plane part.
+Mat3 TotalLagrangianSph::plane_gradient(Index a) const {
+  const int dim = m_body.dim, S = m_body.stride;
+  const double* record = &m_records[static_cast<std::size_t>(a) * 2 * dim * S];
+  Mat3 H = Mat3::Zero();
+  for (int j = 0; j < dim; ++j) {
+    for (int i = 0; i < dim; ++i) H(i, j) = record[(2 * j + 1) * S + i];
+  }
+  return H;
+}
+
+void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H) {
+  update_gradients(u, Executor(1));
+  for (Index a = 0; a < m_body.n; ++a) H[a] = m_law.complete(plane_gradient(a));
+}
+
+/// l_ab (TLS.8) from the gradients in the records.
+Vec3 TotalLagrangianSph::local_displacement(std::span<const double> u, Index a, Index b) const {
+  Vec3 u_ab = Vec3::Zero();
+  for (int i = 0; i < m_body.dim; ++i) {
+    u_ab[i] = u[static_cast<std::size_t>(b) * m_body.stride + i] - u[static_cast<std::size_t>(a) * m_body.stride + i];
+  }
+  return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) * (m_body.position(b) - m_body.position(a));
+}
+
+particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const Executor& executor) {
+  update_gradients(u, executor);
+  particle::Energies e;
+  e.internal = executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
+    double sum = 0;
+    for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
+      sum += m_body.V[a] * m_law.energy(plane_gradient(a));
+    }
+    return sum;
+  });
+  if (penalised() && m_options.penalty == PenaltyForm::potential) e.stabilisation = penalty_energy(u, executor);
+  return e;
+}
+
+/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two rows.
+double TotalLagrangianSph::penalty_energy(std::span<const double> u, const Executor& executor) const {
+  return executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
+    double sum = 0;
+    for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
+      for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
+        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
+      }
+    }
+    return sum;
+  });
+}
+
+double TotalLagrangianSph::viscous_damping_ratio(double omega_max) const {
+  if (!viscous()) return 0;
+  double largest = 0;
+  for (Index a = 0; a < m_body.n; ++a) {
+    double sum = 0;
+    for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) sum += m_rows.weight[k];
+    largest = std::max(largest, sum);
+  }
+  return m_options.alpha * m_wave_speed * m_kernel.smoothing_length() * largest / omega_max;
+}
+
+}  // namespace concord::sph

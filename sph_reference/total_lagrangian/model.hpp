@@ -1,0 +1,63 @@
+#pragma once
+// Total-Lagrangian SPH with corrected gradients, after Ganzenmueller (2015) and Eqs. (27), (28) of the Continuum Bond Method
+// paper; equations (TLS.n) in README.md of this folder.
+
+#include "particle/core/elastic.hpp"
+#include "particle/core/force_model.hpp"
+#include "scene/material.hpp"
+#include "sph_reference/total_lagrangian/neighbours.hpp"
+
+namespace concord::sph {
+
+enum class PenaltyForm {
+  ganzenmueller,  ///< (28) of the Continuum Bond Method paper: along the current bond, no potential (TLS.10)
+  potential       ///< 1/2 k_ab |l_ab|^2 a pair, with all its derivatives (TLS.11)
+};
+
+struct TlsphOptions {
+  KernelShape kernel = KernelShape::cubic_spline;
+  double support = 3;  ///< R / h
+  PenaltyForm penalty = PenaltyForm::ganzenmueller;
+  double psi = 0.07;  ///< penalty factor; 0: no penalty, and no cost
+  double alpha = 0;   ///< linear viscosity; 0: none
+  double beta = 0;    ///< quadratic viscosity
+};
+
+class TotalLagrangianSph final : public particle::ForceModel {
+ public:
+  /// Throws InputError (key tlsph.support) where the neighbours of a particle do not span the space.
+  TotalLagrangianSph(const Body& body, const scene::Problem& problem, const TlsphOptions& options, const Executor& executor);
+
+  void forces(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor) override;
+  particle::Energies energies(std::span<const double> u, const Executor& executor) override;
+  void gradients(std::span<const double> u, std::span<Mat3> H) override;
+  Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
+  bool has_potential() const override { return !penalised() || m_options.penalty == PenaltyForm::potential; }
+  bool viscous() const override { return m_options.alpha > 0 || m_options.beta > 0; }
+  /// Bound on the damping ratio at omega_max by the linear term at alpha (TLS.13).
+  double viscous_damping_ratio(double omega_max) const override;
+  std::size_t interactions() const override { return m_rows.count(); }
+
+  const Neighbours& neighbours() const { return m_rows; }
+  const Kernel& kernel() const { return m_kernel; }
+
+ private:
+  bool penalised() const { return m_options.psi > 0; }
+  Mat3 plane_gradient(Index a) const;
+  void update_gradients(std::span<const double> u, const Executor& executor);
+  Vec3 local_displacement(std::span<const double> u, Index a, Index b) const;
+  double penalty_energy(std::span<const double> u, const Executor& executor) const;
+  template <int Dim>
+  void forces_of(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor);
+
+  TlsphOptions m_options;
+  Kernel m_kernel;
+  scene::ElasticLaw m_law;
+  particle::KernelMaterial m_material;
+  double m_wave_speed, m_rho0;
+  Neighbours m_rows;
+  Column m_records;          ///< [T | H] columns, see rows.hpp
+  std::vector<Index> m_bad;  ///< first bad particle of each range
+};
+
+}  // namespace concord::sph

@@ -1,0 +1,35 @@
+#pragma once
+// Who interacts with whom, with which weight, and the correction that makes gradients of affine fields exact.
+
+#include "particle/core/body.hpp"
+#include "particle/core/parallel.hpp"
+#include "sph_reference/total_lagrangian/kernel.hpp"
+
+#include <span>
+#include <vector>
+
+namespace concord::sph {
+
+using particle::Body;
+using particle::Column;
+using particle::Executor;
+
+/// Directed neighbours in rows: each particle lists all b != a with |X_ab| < R, sorted by number. A pair stands in two rows, so
+/// that every particle sums its own forces and threads never write to the same place.
+struct Neighbours {
+  std::vector<std::size_t> begin;  ///< row of a: [begin[a], begin[a+1])
+  std::vector<Index> other;        ///< b; followed by `lookahead` zeros, so that prefetching may read past the end
+  Column weight;                   ///< w_ab = A_b (-W'(R_ab)/R_ab) [1/m^2], A_b = V_b / thickness (TLS.3)
+  Column stiffness;                ///< kappa_ab = psi E A_b W(R_ab) / R_ab^2 [N/m^4] (TLS.9); empty without penalty
+  Column inverse_moment;           ///< K_a^-1 [m^2]: K_a = sum_b w_ab X_ab (x) X_ab (TLS.4), dim padded columns
+
+  static constexpr std::size_t lookahead = 32;
+  std::size_t count() const { return begin.back(); }
+};
+
+/// Finds all pairs closer than the kernel's support with a grid of cells, in time linear in n, and weighs them. penalty: psi E [Pa];
+/// 0 leaves `stiffness` empty. Throws InputError (key tlsph.support) where neighbours do not span the space, so that K_a
+/// has no inverse: the support must grow.
+Neighbours find_neighbours(const Body& body, const Kernel& kernel, double penalty, const Executor& executor);
+
+}  // namespace concord::sph
