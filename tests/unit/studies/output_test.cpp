@@ -1,0 +1,93 @@
+// study.json and tables.
+
+#include "sample_study.hpp"
+#include "studies/driver/runner.hpp"
+#include "studies/driver/study_output.hpp"
+#include "studies/driver/tables.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace concord::studies;
+
+namespace {
+
+StudyResult judged(const Study& study) {
+  StudyResult result;
+  result.study = &study;
+  result.rows = sample_rows(study);
+  result.fits = fit_all(study, result.rows);
+  result.references = references_of(study, result.rows);
+  result.claims = judge(study, result.rows, result.fits, result.references);
+  return result;
+}
+
+Study with_claim(double minimum) {
+  Study study = sample_study();
+  Claim claim;
+  claim.id = "order";
+  claim.kind = ClaimKind::slope;
+  claim.quantity = "errors.displacement_l2";
+  claim.minimum = minimum;
+  study.claims.push_back(claim);
+  return study;
+}
+
+}  // namespace
+
+TEST(StudyJson, CarriesTheContract) {
+  const Study study = with_claim(1.8);
+  const auto json = study_json(judged(study));
+  EXPECT_EQ(json["name"], "sample");
+  EXPECT_EQ(json["verdict"], "pass");
+  const auto& claim = json["claims"].at(0);
+  for (const char* key : {"id", "statement", "source_value", "measured", "bound", "verdict"})
+    EXPECT_TRUE(claim.contains(key)) << key;
+  EXPECT_NEAR(claim["measured"].get<double>(), 2, 1e-9);
+  ASSERT_EQ(json["rows"].size(), 6u);
+  EXPECT_FALSE(json["rows"][0].contains("local_order")) << "none on the coarsest level";
+  EXPECT_NEAR(json["rows"][2]["local_order"].get<double>(), 2, 1e-9);
+  EXPECT_EQ(json["rows"][0]["variant"], "xi 1");
+  EXPECT_NEAR(json["fits"].at(0)["slope"].get<double>(), 2, 1e-9);
+}
+
+TEST(StudyJson, OneFailedClaimFailsTheStudy) {
+  const Study study = with_claim(2.5);
+  EXPECT_EQ(study_json(judged(study))["verdict"], "fail");
+}
+
+TEST(StudyJson, AnInterruptedStudyDoesNotPass) {
+  const Study study = with_claim(1.8);
+  StudyResult result = judged(study);
+  result.interrupted = true;
+  EXPECT_EQ(study_json(result)["verdict"], "fail");
+}
+
+TEST(StudyJson, AFailedRunIsARowWithItsError) {
+  const Study study = with_claim(1.8);
+  StudyResult result = judged(study);
+  result.rows[0].error = "det F <= 0";
+  EXPECT_EQ(study_json(result)["rows"][0]["error"], "det F <= 0");
+}
+
+TEST(Tables, CellsAreEscaped) {
+  const Table table{"t", {"a", "b"}, {{"x, y", "p|q"}, {"say \"so\"", ""}}};
+  EXPECT_EQ(table.csv(), "a,b\n\"x, y\",p|q\n\"say \"\"so\"\"\",\n");
+  EXPECT_EQ(table.markdown(),
+            "| a | b |\n| --- | --- |\n| x, y | p\\|q |\n| say \"so\" |  |\n");
+}
+
+TEST(Tables, ConvergenceHasALineALevel) {
+  const Study study = with_claim(1.8);
+  for (const Table& table : tables_of(judged(study)))
+    if (table.name == "convergence-errors.displacement_l2") {
+      ASSERT_EQ(table.cells.size(), 3u);
+      EXPECT_EQ(table.cells[1][10], "2.00");
+      return;
+    }
+  FAIL() << "no convergence table";
+}
+
+TEST(Slug, IsAFileName) {
+  EXPECT_EQ(slug("xi 1, 25 %"), "xi-1-25");
+  EXPECT_EQ(slug("block-delaunay-"), "block-delaunay");
+}

@@ -1,0 +1,130 @@
+// Reading study files: ladders, sweeps, selections, and errors with their place.
+
+#include "studies/driver/study_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace concord::studies;
+using concord::InputError;
+
+namespace {
+
+/// A home with one study, s, gone at the end.
+class StudyFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    m_home = std::filesystem::path(testing::TempDir()) /
+             ("concord-study-" + std::to_string(::getpid()) + "-" +
+              testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(m_home / "studies" / "s");
+  }
+  void TearDown() override { std::filesystem::remove_all(m_home); }
+
+  Study read(const std::string& text, bool full = true) {
+    std::ofstream(m_home / "studies" / "s" / "study.toml") << text;
+    return read_study("s", full, m_home);
+  }
+  void expect_error(const std::string& text, int line, const std::string& key) {
+    try {
+      read(text);
+      FAIL() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where().line, line) << error.what();
+      EXPECT_NE(error.key().find(key), std::string::npos) << error.what();
+      EXPECT_FALSE(error.allowed().empty());
+    }
+  }
+
+  std::filesystem::path m_home;
+};
+
+const std::string head = "title = \"t\"\nquestion = \"q\"\nsource = \"s\"\n";
+const std::string one_case = head + "[[case]]\nscene = \"block\"\nmethod = \"delaunay\"\n"
+                                    "resolutions = [8, 4]\n";
+
+}  // namespace
+
+TEST_F(StudyFile, LaddersOfBothModes) {
+  const std::string text =
+      one_case + "seeds = [1, 2, 3]\nquick = { resolutions = [2], seeds = [7] }\n";
+  const Study full = read(text, true), quick = read(text, false);
+  EXPECT_EQ(full.cases.at(0).resolutions, (std::vector<double>{4, 8})) << "ascending";
+  EXPECT_EQ(full.cases.at(0).seeds.size(), 3u);
+  EXPECT_EQ(quick.cases.at(0).resolutions, std::vector<double>{2});
+  EXPECT_EQ(quick.cases.at(0).seeds, std::vector<std::uint64_t>{7});
+  EXPECT_TRUE(read(one_case + "quick = false\n", false).cases.empty());
+  EXPECT_EQ(read(one_case + "quick = false\n", true).cases.size(), 1u);
+}
+
+TEST_F(StudyFile, SweepMakesACaseAValue) {
+  const Study study =
+      read(one_case + "variant = \"v\"\nset = { xi_n = 0.5, force = \"static\" }\n"
+                      "sweep = { psi = [0, 0.1], \"parameters.U\" = [\"1 mm\"] }\n");
+  ASSERT_EQ(study.cases.size(), 2u);
+  EXPECT_EQ(study.cases[1].variant, "v, U 1 mm, psi 0.1");
+  EXPECT_EQ(study.cases[1].set.at("psi"), "0.1");
+  EXPECT_EQ(study.cases[1].set.at("xi_n"), "0.5");
+  EXPECT_EQ(study.cases[1].set.at("force"), "static");
+  EXPECT_EQ(study.cases[1].scene_set.at("parameters.U"), "1 mm");
+}
+
+TEST_F(StudyFile, ErrorsTellTheirPlace) {
+  expect_error(one_case + "resolution = [8]\n", 8, "resolution");
+  expect_error(one_case + "perturb = 0.6\n", 8, "perturb");
+  expect_error(one_case + "seeds = [1.5]\n", 8, "seeds");
+  expect_error(head + "[[case]]\nscene = \"b\"\nmethod = \"m\"\nresolutions = [0]\n", 7,
+               "resolutions");
+  expect_error(head + "[[case]]\nscene = 3\n", 5, "scene");
+  expect_error(head + "colour = 1\n", 4, "colour");
+  const std::string claim = one_case +
+                            "[[claim]]\nid = \"a\"\nstatement = \"s\"\nsource = \"s\"\n"
+                            "quantity = \"h\"\n";
+  expect_error(claim + "kind = \"value\"\n", 8, "max");
+  expect_error(claim + "kind = \"worth\"\nmax = 1\n", 13, "kind");
+  expect_error(claim + "kind = \"value\"\nmax = 1\nunit = \"furlong\"\n", 8, "unit");
+  expect_error(claim + "kind = \"value\"\nmax = 1\nmethod = \"tlsph\"\n", 8, "claim");
+  expect_error(claim + "kind = \"value\"\nmax = 1\nother = { variant = \"x\" }\n", 15, "other");
+  expect_error(claim + "kind = \"ratio\"\nmax = 1\n", 8, "other");
+}
+
+TEST_F(StudyFile, AClaimOfASlopeNeedsOneCase) {
+  const std::string two =
+      one_case + "[[case]]\nscene = \"block\"\nmethod = \"fem\"\nresolutions = [4]\n";
+  const std::string claim =
+      "[[claim]]\nid = \"a\"\nstatement = \"s\"\nsource = \"s\"\nkind = \"slope\"\n"
+      "quantity = \"h\"\nmin = 1\n";
+  expect_error(two + claim, 12, "claim");
+  EXPECT_NO_THROW(read(two + claim + "method = \"fem\"\n"));
+}
+
+TEST_F(StudyFile, NamesOfCasesAndClaimsAreUnique) {
+  expect_error(one_case +
+                   "[[case]]\nscene = \"block\"\nmethod = \"delaunay\"\nresolutions = [2]\n",
+               8, "variant");
+}
+
+TEST_F(StudyFile, AnUnknownStudyNamesThoseThereAre) {
+  read(one_case);
+  try {
+    read_study("t", true, m_home);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(error.allowed().find('s'), std::string::npos);
+  }
+}
+
+// Every study of this repository reads in both modes.
+TEST(Studies, OfTheRepositoryRead) {
+  const std::filesystem::path home = std::getenv("CONCORD_HOME");
+  const auto names = study_names(home);
+  ASSERT_GE(names.size(), 3u);
+  for (const std::string& name : names)
+    for (const bool full : {false, true}) {
+      const Study study = read_study(name, full, home);
+      EXPECT_FALSE(study.cases.empty()) << name;
+      EXPECT_FALSE(study.claims.empty()) << name << " says nothing that could fail";
+    }
+}
