@@ -135,7 +135,7 @@ ConfigNode& element_at(ConfigNode& array, const std::string& part, const std::st
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
   if (error != std::errc{} || end != part.data() + part.size() || index > array.elements.size())
-    throw InputError({command_line, 0, 0}, key, quoted(part),
+    throw InputError({command_line, 0, 0}, key, in_quotes(part),
                      fmt::format("an index from 0 to {}", array.elements.size()));
   if (index == array.elements.size()) array.elements.emplace_back();
   return array.elements[index];
@@ -155,7 +155,7 @@ ConfigNode* ConfigNode::find(const std::string& name) {
 
 std::string ConfigNode::describe() const {
   switch (kind) {
-    case Kind::text: return quoted(text);
+    case Kind::text: return in_quotes(text);
     case Kind::integer:
     case Kind::real: return "the number " + text;
     case Kind::boolean: return text;
@@ -205,7 +205,7 @@ void set_value(ConfigNode& root, const std::string& dotted_key, const std::strin
       node = child;
     } else {
       throw InputError({command_line, 0, 0}, dotted_key,
-                       quoted(node->key) + ", which is " + node->describe(),
+                       in_quotes(node->key) + ", which is " + node->describe(),
                        "a key within a table or an index in an array");
     }
     node->key = key;

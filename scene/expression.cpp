@@ -63,15 +63,15 @@ Expression::Expression(const std::string& text,
   if (text.find_first_not_of(" \t") == std::string::npos)
     throw InputError(where, key, "an empty expression", known_names(parameters));
   if (assigns(text))
-    throw InputError(where, key, quoted(text) + ", an assignment", known_names(parameters));
+    throw InputError(where, key, in_quotes(text) + ", an assignment", known_names(parameters));
   try {
     m_impl = std::make_unique<Impl>(text, parameters);
   } catch (const mu::ParserError& error) {
-    throw InputError(where, key, quoted(text) + " (" + error.GetMsg() + ")",
+    throw InputError(where, key, in_quotes(text) + " (" + error.GetMsg() + ")",
                      known_names(parameters));
   }
   if (m_impl->constant && !std::isfinite(m_impl->constant_value))
-    throw InputError(where, key, quoted(text) + ", which is not finite",
+    throw InputError(where, key, in_quotes(text) + ", which is not finite",
                      known_names(parameters));
 }
 

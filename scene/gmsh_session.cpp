@@ -113,7 +113,7 @@ void GmshSession::fail(const Problem& problem, const std::string& stage,
     text = match.suffix().str();
   }
   throw InputError(where, "geometry",
-                   quoted(problem.geometry.filename().string()) + ", which gmsh " + stage +
+                   in_quotes(problem.geometry.filename().string()) + ", which gmsh " + stage +
                        ": " + (text.empty() ? "no reason given" : text),
                    "a .geo file that gmsh 4 reads and meshes with the variables h, structured "
                    "and the scene's parameters");

@@ -16,7 +16,7 @@ const Mesh::Group& find_group(const Mesh& mesh, const std::string& name,
   if (found != mesh.groups.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [known, group] : mesh.groups) names.push_back(known);
-  throw InputError(where, "group", quoted(name) + ", which the geometry does not have",
+  throw InputError(where, "group", in_quotes(name) + ", which the geometry does not have",
                    names.empty() ? "no group: the .geo defines no Physical groups"
                                  : allowed_words(name, names));
 }
@@ -69,9 +69,9 @@ void check_values(const Mesh& mesh, const Problem& problem, double t) {
           throw InputError(
               bc.where, "group",
               fmt::format("{} with {} = {:g} m at ({:g}, {:g}, {:g}), where group {} has {:g} m",
-                          quoted(bc.group), "u_" + std::to_string(k + 1),
+                          in_quotes(bc.group), "u_" + std::to_string(k + 1),
                           value[static_cast<Index>(k)], X[0], X[1], X[2],
-                          quoted(p.condition->group), p.value),
+                          in_quotes(p.condition->group), p.value),
               "conditions that agree where their groups meet; leave a component out with "
               "\"free\"");
         p = {&bc, value[static_cast<Index>(k)]};
@@ -94,7 +94,7 @@ void check_tractions(const Mesh& mesh, const Problem& problem) {
           throw InputError(load.where, "group",
                            fmt::format("{} with a traction and a prescribed displacement in "
                                        "direction {}",
-                                       quoted(load.group), k + 1),
+                                       in_quotes(load.group), k + 1),
                            "one of the two for each component; a traction component may be "
                            "\"0\", a displacement \"free\"");
       }
@@ -116,7 +116,7 @@ std::vector<Index> Mesh::group_nodes(const std::string& name, const SourcePositi
   for (std::size_t a = 0; a < nodes.size(); ++a)
     if (inside[static_cast<std::size_t>(node_entity[a])]) found.push_back(static_cast<Index>(a));
   if (found.empty())
-    throw InputError(where, "group", quoted(name) + ", which holds no node of the body",
+    throw InputError(where, "group", in_quotes(name) + ", which holds no node of the body",
                      "a group on the body");
   return found;
 }
@@ -126,7 +126,7 @@ std::vector<Index> Mesh::group_facets(const std::string& name,
   const Group& group = find_group(*this, name, where);
   if (group.dim != dim - 1)
     throw InputError(where, "group",
-                     quoted(name) + ", a group of " + dimension_word(group.dim),
+                     in_quotes(name) + ", a group of " + dimension_word(group.dim),
                      std::string("a group of ") + dimension_word(dim - 1));
   std::vector<Index> found;
   for (std::size_t f = 0; f < facet_count(); ++f)
@@ -134,7 +134,7 @@ std::vector<Index> Mesh::group_facets(const std::string& name,
         group.entities.end())
       found.push_back(static_cast<Index>(f));
   if (found.empty())
-    throw InputError(where, "group", quoted(name) + ", which lies inside the body",
+    throw InputError(where, "group", in_quotes(name) + ", which lies inside the body",
                      "a group on the surface of the body");
   return found;
 }
@@ -148,7 +148,7 @@ int Mesh::group_axis(const std::string& name, const SourcePosition& where) const
     if (next != axis) axis = -1;
   }
   if (axis < 0)
-    throw InputError(where, "group", quoted(name) + ", which is not normal to one axis",
+    throw InputError(where, "group", in_quotes(name) + ", which is not normal to one axis",
                      std::string("a group of plane ") + dimension_word(dim - 1) +
                          " normal to one coordinate axis");
   return axis;

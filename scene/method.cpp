@@ -27,12 +27,12 @@ void check(const std::string& key, const ParameterInfo& info, const std::string&
   if (!info.choices.empty()) {
     for (const std::string& choice : info.choices)
       if (choice == text) return;
-    throw InputError(setting_position, key, quoted(text), allowed_words(text, info.choices));
+    throw InputError(setting_position, key, in_quotes(text), allowed_words(text, info.choices));
   }
   if (!is_number(info)) return;
   const double value = read_number(text);
   if (!(value >= info.minimum && value <= info.maximum))
-    throw InputError(setting_position, key, quoted(text),
+    throw InputError(setting_position, key, in_quotes(text),
                      "a number " + (info.range.empty()
                                         ? fmt::format("from {} to {}", info.minimum, info.maximum)
                                         : info.range));
@@ -65,7 +65,7 @@ Settings::Settings(std::string method, const std::vector<ParameterInfo>& table,
 double Settings::number(const std::string& key) const {
   const double value = read_number(word(key));
   if (std::isnan(value))
-    throw InputError(setting_position, m_method + "." + key, quoted(word(key)), "a number");
+    throw InputError(setting_position, m_method + "." + key, in_quotes(word(key)), "a number");
   return value;
 }
 
@@ -102,7 +102,7 @@ const Method& MethodRegistry::find(const std::string& name) const {
   if (found != m_methods.end()) return *found->second;
   std::vector<std::string> names;
   for (const auto& [known, method] : m_methods) names.push_back(known);
-  throw InputError({"command line", 0, 0}, "method", quoted(name), allowed_words(name, names));
+  throw InputError({"command line", 0, 0}, "method", in_quotes(name), allowed_words(name, names));
 }
 
 std::vector<const Method*> MethodRegistry::all() const {

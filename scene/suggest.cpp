@@ -40,6 +40,6 @@ std::string allowed_words(const std::string& found, const std::vector<std::strin
   return text;
 }
 
-std::string quoted(const std::string& text) { return '"' + text + '"'; }
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
 
 }  // namespace concord::scene

@@ -15,6 +15,6 @@ int edit_distance(const std::string& a, const std::string& b);
 std::string allowed_words(const std::string& found, const std::vector<std::string>& allowed);
 
 /// Text in quotes.
-std::string quoted(const std::string& text);
+std::string in_quotes(const std::string& text);
 
 }  // namespace concord::scene

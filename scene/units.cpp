@@ -133,14 +133,14 @@ UnitValue parse_any_quantity(const std::string& text, const SourcePosition& wher
   double number = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
   if (error != std::errc{} || !std::isfinite(number))
-    throw InputError(where, key, quoted(text) + ", which begins with no number", allowed);
+    throw InputError(where, key, in_quotes(text) + ", which begins with no number", allowed);
   rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
   const std::string_view symbol = trimmed(rest);
   if (symbol.empty()) return {number, unit::none};
   const auto unit = read_unit(symbol);
   if (!unit)
     throw InputError(where, key,
-                     quoted(text) + ", whose unit " + quoted(std::string(symbol)) +
+                     in_quotes(text) + ", whose unit " + in_quotes(std::string(symbol)) +
                          " is unknown",
                      allowed);
   // Dividing by 1000 rounds once, as reading "0.007" does; multiplying by 1e-3 rounds twice.
@@ -155,9 +155,9 @@ double parse_quantity(const std::string& text, const UnitDimension& expected,
   const UnitValue value = parse_any_quantity(text, where, key, allowed);
   if (value.dimension == expected) return value.factor;
   if (value.dimension == unit::none)
-    throw InputError(where, key, quoted(text) + " without a unit", allowed);
+    throw InputError(where, key, in_quotes(text) + " without a unit", allowed);
   throw InputError(where, key,
-                   quoted(text) + ", a " + dimension_name(value.dimension), allowed);
+                   in_quotes(text) + ", a " + dimension_name(value.dimension), allowed);
 }
 
 }  // namespace concord::scene

@@ -1,0 +1,40 @@
+#pragma once
+// One RAII wrapper for all of HDF5's handles.
+
+#include <filesystem>
+#include <hdf5.h>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace concord::scene {
+
+/// Owns an HDF5 identifier and closes it with the function given. Throws std::runtime_error when
+/// HDF5 returned an error instead of an identifier.
+class Hdf5Handle {
+ public:
+  Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what)
+      : m_id(id), m_close(close) {
+    if (id < 0) throw std::runtime_error("HDF5 cannot " + what);
+  }
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : m_id(std::exchange(other.m_id, -1)), m_close(other.m_close) {}
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(Hdf5Handle&&) = delete;
+  ~Hdf5Handle() {
+    if (m_id >= 0) m_close(m_id);
+  }
+  operator hid_t() const noexcept { return m_id; }
+
+ private:
+  hid_t m_id;
+  herr_t (*m_close)(hid_t);
+};
+
+/// Throws std::runtime_error when an HDF5 call failed.
+inline void hdf5_check(herr_t status, const std::string& what) {
+  if (status < 0) throw std::runtime_error("HDF5 cannot " + what);
+}
+
+}  // namespace concord::scene

@@ -1,0 +1,71 @@
+// Every key of a scene file: what `describe` prints and what the reader checks against.
+
+#include "scene/keys.hpp"
+
+namespace concord::scene {
+
+const std::vector<KeyInfo>& scene_keys() {
+  static const std::vector<KeyInfo> keys{
+      {"title", "text", "", "", "Name of the problem in reports"},
+      {"source", "text", "", "", "Where the problem comes from: paper, section"},
+      {"dimension", "text", "", "3D | plane strain | plane stress",
+       "What the third direction does; plane bodies lie in Z = 0"},
+      {"geometry", "text", "", "a file beside the scene file", "The gmsh .geo file"},
+      {"layout", "text", "lattice", "lattice | unstructured",
+       "How particles and cells lie: the .geo sees structured = 1 or 0"},
+      {"reference_length", "m", "", "> 0", "L: resolution N means the spacing h = L/N"},
+      {"thickness", "m", "1 m", "> 0", "Out-of-plane thickness of plane problems"},
+      {"static", "true | false", "false", "true | false", "Quasi-static: t runs from 0 to 1"},
+      {"load_steps", "1", "1", ">= 1", "Static: number of load steps in t from 0 to 1"},
+      {"end_time", "s", "", "> 0", "Dynamic: the run goes from 0 to this time"},
+      {"gravity", "m/s^2", "[0, 0, 0]", "one acceleration a direction",
+       "Body force per mass in the whole body"},
+
+      {"parameters.*", "any", "", "a number, a text with a unit, or {expr = \"...\"}",
+       "Parameter of the .geo and of expressions, by its own name, in SI units"},
+
+      {"material.model", "text", "", "neo-hookean | st-venant-kirchhoff", "Stress law"},
+      {"material.density", "kg/m^3", "", "> 0", "Mass per reference volume"},
+      {"material.youngs_modulus", "Pa", "", "> 0", "E, together with poissons_ratio"},
+      {"material.poissons_ratio", "1", "", "-1 < nu < 0.5",
+       "nu, together with youngs_modulus or shear_modulus"},
+      {"material.shear_modulus", "Pa", "", "> 0",
+       "mu, together with bulk_modulus or poissons_ratio"},
+      {"material.bulk_modulus", "Pa", "", "> 0", "kappa, together with shear_modulus"},
+
+      {"boundary[].group", "text", "", "a physical group of the .geo",
+       "Where the condition holds"},
+      {"boundary[].kind", "text", "",
+       "fixed | symmetric | antisymmetric | displacement | traction", "What is prescribed"},
+      {"boundary[].value", "m or Pa", "", "an expression a direction, or \"exact\"",
+       "Displacement (a component may be \"free\" or \"exact\") or nominal traction"},
+
+      {"initial.displacement", "m", "zero", "an expression a direction",
+       "Displacement at t = 0"},
+      {"initial.velocity", "m/s", "zero", "an expression a direction", "Velocity at t = 0"},
+      {"body_force.value", "N/m^3", "zero", "an expression a direction",
+       "Force per reference volume"},
+      {"exact.displacement", "m", "", "an expression a direction", "The exact displacement"},
+      {"exact.velocity", "m/s", "", "an expression a direction", "The exact velocity"},
+
+      {"quantity[].name", "text", "", "letters, digits and _",
+       "Name in history.csv and summary.json"},
+      {"quantity[].kind", "text", "", "point | average | reaction | maximum",
+       "Displacement at a point, mean over a group, reaction of a group, maximum of a field"},
+      {"quantity[].at", "m", "", "one length a direction", "Point: reference position"},
+      {"quantity[].group", "text", "", "a physical group of the .geo",
+       "Average, reaction: where; maximum: restriction"},
+      {"quantity[].field", "text", "displacement",
+       "displacement | velocity | displacement_error | von_mises | pressure | "
+       "unbalanced_force",
+       "Average, maximum: of which field"},
+      {"quantity[].where", "text", "everywhere", "everywhere | interior",
+       "Maximum: interior leaves the surface of the body out"},
+
+      {"output.frames", "1", "20", ">= 0", "Field frames besides the initial one"},
+      {"output.history_rows", "1", "200", ">= 0", "Rows of history.csv over the run"},
+  };
+  return keys;
+}
+
+}  // namespace concord::scene
