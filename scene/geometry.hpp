@@ -44,7 +44,8 @@ struct Mesh {
   std::vector<Index> cells;  ///< nodes_per_cell a cell
   int nodes_per_facet = 0;
   std::vector<Index>
-      facets;  ///< boundary facets (surfaces in 3D, curves in 2D), nodes_per_facet each
+      facets;  ///< boundary facets (surfaces in 3D, curves in 2D), nodes_per_facet each; the
+               ///< normal by the right-hand rule (2D: the body to the left) points outwards
   std::vector<Index> facet_entity;  ///< per facet: index into entities
   /// Physical groups: dimension and the entities (indices) each holds.
   struct Group {

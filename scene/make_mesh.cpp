@@ -15,31 +15,6 @@ namespace {
 
 using DimTag = std::pair<int, int>;
 
-/// gmsh's element numbers (gmsh reference manual, "MSH file format").
-int element_type(CellShape shape, int dim, int order) {
-  if (shape == CellShape::simplex) return dim == 3 ? (order == 1 ? 4 : 11) : (order == 1 ? 2 : 9);
-  return dim == 3 ? (order == 1 ? 5 : 12) : (order == 1 ? 3 : 10);
-}
-int facet_type(CellShape shape, int dim, int order) {
-  if (dim == 2) return order == 1 ? 1 : 8;
-  return element_type(shape, 2, order);
-}
-
-int node_count(int type) {
-  switch (type) {
-    case 1: return 2;
-    case 2:
-    case 8: return 3;
-    case 3:
-    case 4: return 4;
-    case 5: return 8;
-    case 9: return 6;
-    case 10: return 9;
-    case 11: return 10;
-    default: return 27;
-  }
-}
-
 void generate(const GmshSession& session, const Problem& problem, const MeshRequest& request) {
   const int dim = problem.dim();
   const bool hypercube = request.shape == CellShape::hypercube;
@@ -59,11 +34,24 @@ void generate(const GmshSession& session, const Problem& problem, const MeshRequ
     session.fail(problem, "cannot mesh", report);
 }
 
+/// How much larger the spacing before the subdivision into hypercubes must be. Quadrangles are
+/// halved. Each tetrahedron gives four hexahedra, and about 5.8 tetrahedra fill a cube of their
+/// edge length (counted on gmsh's meshes of a cube): (4 * 5.8)^(1/3).
+double subdivided_spacing(int dim) { return dim == 2 ? 2.0 : 2.85; }
+
 /// Nodes in the order of gmsh's tags, each on its entity; only those that a cell uses stay.
 struct NodeTable {
   std::vector<Index> number;  // by gmsh's tag, -1 where unused
-  Index operator[](std::size_t tag) const { return number[tag]; }
+  Index operator[](std::size_t tag) const { return tag < number.size() ? number[tag] : -1; }
 };
+
+int node_count(int type) {
+  std::string name;
+  int dim = 0, order = 0, nodes = 0, primary = 0;
+  std::vector<double> local;
+  gmsh::model::mesh::getElementProperties(type, name, dim, order, nodes, local, primary);
+  return nodes;
+}
 
 std::vector<std::size_t> elements_of(int dim, int tag, int type, const Problem& problem) {
   std::vector<int> types;
@@ -109,11 +97,9 @@ NodeTable collect_nodes(Mesh& mesh, const std::vector<std::size_t>& cell_tags) {
   return table;
 }
 
+/// Cells with their nodes, oriented; then the facets.
 void collect_cells(Mesh& mesh, const Problem& problem) {
-  const int type = element_type(mesh.shape, mesh.dim, mesh.order);
-  const int facet = facet_type(mesh.shape, mesh.dim, mesh.order);
-  mesh.nodes_per_cell = node_count(type);
-  mesh.nodes_per_facet = node_count(facet);
+  const int type = gmsh_element(mesh.shape, mesh.dim, mesh.order);
   std::vector<std::size_t> cells;
   for (const Entity& entity : mesh.entities) {
     if (entity.dim != mesh.dim) continue;
@@ -125,18 +111,21 @@ void collect_cells(Mesh& mesh, const Problem& problem) {
                      fmt::format("no {}-dimensional body", mesh.dim),
                      mesh.dim == 3 ? "a .geo with at least one volume"
                                    : "a .geo with at least one surface in the plane Z = 0");
+  mesh.nodes_per_cell = node_count(type);
   const NodeTable table = collect_nodes(mesh, cells);
   for (const std::size_t tag : cells) mesh.cells.push_back(table[tag]);
+  orient_cells(mesh, problem);
+
+  std::vector<Index> facets, facet_entity;
+  const int facet = gmsh_element(mesh.shape, mesh.dim - 1, mesh.order);
   for (std::size_t e = 0; e < mesh.entities.size(); ++e) {
-    const Entity& entity = mesh.entities[e];
-    if (entity.dim != mesh.dim - 1) continue;
-    std::vector<int> upward, downward;
-    gmsh::model::getAdjacencies(entity.dim, entity.tag, upward, downward);
-    if (upward.size() != 1) continue;  // an interface inside, or no part of the body
-    for (const std::size_t tag : elements_of(entity.dim, entity.tag, facet, problem))
-      mesh.facets.push_back(table[tag]);
-    mesh.facet_entity.resize(mesh.facet_count(), static_cast<Index>(e));
+    if (mesh.entities[e].dim != mesh.dim - 1) continue;
+    for (const std::size_t tag : elements_of(mesh.dim - 1, mesh.entities[e].tag, facet, problem))
+      facets.push_back(table[tag]);
+    facet_entity.resize(facets.size() / static_cast<std::size_t>(node_count(facet)),
+                        static_cast<Index>(e));
   }
+  collect_facets(mesh, problem, facets, facet_entity);
 }
 
 void collect_groups(Mesh& mesh) {
@@ -170,15 +159,14 @@ Mesh make_mesh(const Problem& problem, const MeshRequest& request) {
   mesh.h = request.h;
   const bool lattice = request.layout == Layout::lattice;
   GmshSession session;
-  // Subdivision into quadrangles or hexahedra halves the spacing.
-  const bool halved = !lattice && request.shape == CellShape::hypercube;
-  session.open_geometry(problem, halved ? 2 * request.h : request.h, lattice);
+  const bool subdivided = !lattice && request.shape == CellShape::hypercube;
+  const double spacing = subdivided ? subdivided_spacing(mesh.dim) * request.h : request.h;
+  session.open_geometry(problem, spacing, lattice);
   generate(session, problem, request);
   collect_entities(mesh, problem);
   collect_cells(mesh, problem);
   collect_groups(mesh);
   snap_to_planes(mesh, problem);
-  orient_cells(mesh, problem);
   check_groups(mesh, problem);
   return mesh;
 }

@@ -9,6 +9,15 @@ namespace concord::scene {
 /// Entities of dimension 0 to mesh.dim with flatness, axis and closure, from gmsh's open model.
 void collect_entities(Mesh& mesh, const Problem& problem);
 
+/// gmsh's number of the element of a shape, dimension and order (reference manual, "MSH file
+/// format").
+int gmsh_element(CellShape shape, int dim, int order);
+
+/// Fills facets and facet_entity from the oriented cells; gmsh's own surface elements (nodes and
+/// entities) say which entity a face lies on. Throws InputError if a face lies on none.
+void collect_facets(Mesh& mesh, const Problem& problem, const std::vector<Index>& gmsh_facets,
+                    const std::vector<Index>& gmsh_facet_entity);
+
 /// Nodes on the closure of axis-aligned planes (3D) or lines (2D) get that coordinate exactly:
 /// the one of the entity's first corner. Plane meshes get Z = 0; throws InputError if they lie
 /// elsewhere.

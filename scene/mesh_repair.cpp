@@ -2,6 +2,8 @@
 
 #include "scene/mesh_parts.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -127,9 +129,7 @@ void snap_to_planes(Mesh& mesh, const Problem& problem) {
 
 void orient_cells(Mesh& mesh, const Problem& problem) {
   const int corners = mesh.shape == CellShape::simplex ? 1 : corner_count(mesh.shape, mesh.dim);
-  const bool simplex = mesh.shape == CellShape::simplex;
-  const int type = mesh.dim == 3 ? (simplex ? (mesh.order == 1 ? 4 : 11) : (mesh.order == 1 ? 5 : 12))
-                                 : (simplex ? (mesh.order == 1 ? 2 : 9) : (mesh.order == 1 ? 3 : 10));
+  const int type = gmsh_element(mesh.shape, mesh.dim, mesh.order);
   const std::vector<int> mirror = reflection(type);
   const auto per_cell = static_cast<std::size_t>(mesh.nodes_per_cell);
   std::vector<Index> old(per_cell);
