@@ -28,16 +28,16 @@ def plain(value, digits=3):
 
 
 def needs_power(value):
-    return value != 0 and not 1e-3 <= abs(value) < 1e5
+    return value != 0 and not 1e-2 <= abs(value) < 1e5
 
 
 def text(value, digits=3, missing=DASH):
     """For sentences and plain-text files: 0.0315, 2.23e-3; a dash when missing."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1e5:
+        return str(value).replace("-", MINUS)  # counted, not measured
     value = number(value)
     if value is None:
         return missing
-    if float(value).is_integer() and abs(value) < 1e5:
-        return str(int(value)).replace("-", MINUS)
     if needs_power(value):
         mantissa, exponent = split(value, digits)
         return f"{mantissa}e{exponent}".replace("-", MINUS)
@@ -54,13 +54,52 @@ def pretty(value, digits=3, missing=DASH):
     return f"{match[1]}×10{power}"
 
 
+def exact(value, digits=4, missing=DASH):
+    """For values that were chosen, not measured (spacings, settings, ticks): no trailing zeros."""
+    value = number(value)
+    if value is None:
+        return missing
+    if value != 0 and not 1e-4 <= abs(value) < 1e5:
+        mantissa, exponent = split(value, digits)
+        mantissa = mantissa.rstrip("0").rstrip(".") if "." in mantissa else mantissa
+        power = f"10{str(exponent).translate(SUPERSCRIPTS)}"
+        out = power if mantissa == "1" else f"{mantissa}×{power}"
+        return out.replace("-", MINUS)
+    return f"{value:.{digits}g}".replace("-", MINUS) if abs(value) < 1000 else f"{value:.10g}".replace("-", MINUS)
+
+
+def exact_column(values, digits=4):
+    """`exact` texts, padded so that their points stand in one line."""
+    texts = [None if number(v) is None else exact(v, digits) for v in values]
+    if any(t and "×" in t for t in texts):
+        return [t or DASH for t in texts]
+    places = max((len(t.partition(".")[2]) for t in texts if t), default=0)
+    return [DASH if t is None else _padded(t, places) for t in texts]
+
+
+def between(low, high, powers, digits=3):
+    """"(1.47 to 1.70)×10⁻²": both ends of a spread in the larger one's power."""
+    size = max(abs(low), abs(high))
+    if not powers or min(abs(low), abs(high)) < size / 100:
+        return f"{pretty(low, digits)} to {pretty(high, digits)}"
+    _, exponent = split(size, digits)
+    scale = 10.0 ** -exponent
+    ends = [f"{v * scale:.{digits - 1}f}".replace("-", MINUS) for v in (low, high)]
+    return f"({ends[0]} to {ends[1]})×10{str(exponent).translate(SUPERSCRIPTS)}"
+
+
+def takes_powers(values):
+    """True when a column of these numbers is set with powers of ten."""
+    known = [v for v in map(number, values) if v]
+    return any(map(needs_power, known)) and not all(v.is_integer() for v in known)
+
+
 def column(values, digits=3):
     """One text a value, all in one notation and padded so that right-aligned cells line up."""
-    known = [v for v in map(number, values) if v is not None]
-    powers = any(needs_power(v) for v in known if v) and not all(float(v).is_integer() for v in known)
-    if powers:
+    if takes_powers(values):
         return _powers(values, digits)
-    if all(float(v).is_integer() for v in known):
+    counted = [v for v in values if number(v) is not None]
+    if all(isinstance(v, int) or number(v).is_integer() and abs(v) >= 1000 for v in counted):
         return [DASH if number(v) is None else grouped(int(number(v))) for v in values]
     texts = [None if number(v) is None else plain(number(v), digits) for v in values]
     places = max(len(t.partition(".")[2]) for t in texts if t)

@@ -7,15 +7,16 @@ from matplotlib.figure import Figure  # noqa: E402  (after the choice of back en
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from . import draw_labels, draw_triangles, svg  # noqa: E402
-from .digits import pretty, ticks  # noqa: E402
+from .digits import exact, pretty, ticks  # noqa: E402
 from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
 
 INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"))
 DIRECT = 9  # at most so many curves are labelled at their ends; the page's key names all
-SIZE = 12
+SIZE = 13
 HEIGHT = 380
-LEFT, BOTTOM, TOP = 62, 46, 12
-PLAIN, LABELLED = 520, 640  # widths without and with room for labels; units are CSS pixels
+LEFT, BOTTOM, TOP = 58, 50, 12
+AREA = 360  # width of the axes beside labels; all in CSS pixels
+PLAIN = 500  # width of a plot without labels
 
 matplotlib.rcParams.update({
     "svg.hashsalt": "concord", "svg.fonttype": "none", "font.size": SIZE, "axes.unicode_minus": True,
@@ -28,10 +29,9 @@ matplotlib.rcParams.update({
 def draw(spec):
     """The specification as an <svg> element."""
     curves = spec["curves"]
-    labelled = len(curves) <= DIRECT
-    longest = max(len(_end_label(c)) for c in curves)
-    right = min(210, 16 + 6.9 * longest) if labelled else 14
-    width = (PLAIN - 14 if labelled else PLAIN) + (right if labelled else 0)
+    labelled = len(curves) <= DIRECT or any(c["case"] < 0 for c in curves)
+    right = 22 + max(_width(_end_label(c)) for c in curves) if labelled else 14
+    width = LEFT + AREA + right if labelled else PLAIN
     figure = Figure(figsize=(width / 72, HEIGHT / 72), dpi=72)
     axes = figure.add_axes([LEFT / width, BOTTOM / HEIGHT, (width - LEFT - right) / width,
                             (HEIGHT - BOTTOM - TOP - 16) / HEIGHT])
@@ -45,9 +45,15 @@ def draw(spec):
     return svg.fragment(figure, spec["ident"], spec["alt"])
 
 
+def _width(words):
+    """Of a text in the drawing [CSS pixels]."""
+    from matplotlib.textpath import TextPath
+    return TextPath((0, 0), words, size=SIZE).get_extents().x1
+
+
 def _end_label(curve):
     slope = curve.get("slope")
-    return curve["label"] + (f"  {pretty(slope)}" if slope is not None else "")
+    return curve["label"] + (f" ({pretty(slope)})" if slope is not None else "")
 
 
 def _frame(axes, spec, curves):
@@ -78,13 +84,13 @@ def _log(axes, one, values, is_x, levels):
     if is_x and len(places) <= 7 and _apart(places, low, high):
         one.set_major_locator(FixedLocator(places))
         one.set_minor_locator(FixedLocator([]))
-        one.set_major_formatter(FuncFormatter(lambda v, _: pretty(v)))
+        one.set_major_formatter(FuncFormatter(lambda v, _: exact(v)))
         return
     narrow = high / low < 30
     one.set_major_locator(LogLocator(10, subs=(1, 2, 5) if narrow else (1,), numticks=12))
     one.set_minor_locator(LogLocator(10, subs=range(2, 10), numticks=12))
     one.set_minor_formatter(NullFormatter())
-    one.set_major_formatter(FuncFormatter(lambda v, _: _power(v, narrow)))
+    one.set_major_formatter(FuncFormatter(lambda v, _: exact(v, 2)))
 
 
 def _apart(places, low, high):
@@ -92,13 +98,6 @@ def _apart(places, low, high):
     import math
     full = math.log(high / low) or 1
     return all(math.log(b / a) / full > 0.085 for a, b in zip(places, places[1:]))
-
-
-def _power(value, narrow):
-    if narrow or 1e-2 < value < 1e4:
-        return pretty(value, 2)
-    out = pretty(value * 1.0000001, 1)
-    return out[2:] if out.startswith("1×") else out
 
 
 def _linear(axes, one, values, is_x, levels):
@@ -110,11 +109,11 @@ def _linear(axes, one, values, is_x, levels):
     (axes.set_xlim if is_x else axes.set_ylim)(*limits)
     places = ticks(*limits, count=6 if is_x else 5)
     digits = 3
-    while len({pretty(p, digits) for p in places}) < len(places) and digits < 8:
+    while len({exact(p, digits) for p in places}) < len(places) and digits < 8:
         digits += 1
     clean = [0.0 if abs(p) < 1e-9 * (limits[1] - limits[0]) else p for p in places]
     one.set_major_locator(FixedLocator(clean))
-    one.set_major_formatter(FuncFormatter(lambda v, _: pretty(float(f"{v:.10g}"), digits)))
+    one.set_major_formatter(FuncFormatter(lambda v, _: exact(float(f"{v:.10g}"), digits)))
 
 
 def _line(axes, curve, number, long):
@@ -142,7 +141,7 @@ def _labels(axes, curves):
         last = max(range(len(curve["x"])), key=lambda i: curve["x"][i])
         ends.append(axes.transData.transform((curve["x"][last], curve["y"][last])))
     box = axes.bbox
-    places = draw_labels.spread([e[1] for e in ends], SIZE * 1.32, box.y0 + 6, box.y1)
+    places = draw_labels.spread([e[1] for e in ends], SIZE * 1.32, box.y0 + 6, box.y1 + 8)
     edge = box.x1 + 12
     back = axes.figure.transFigure.inverted()
     for number, (curve, end, y) in enumerate(zip(curves, ends, places)):

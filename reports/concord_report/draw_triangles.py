@@ -16,7 +16,7 @@ def _dense(axes, curves):
     out = []
     for curve in curves:
         at = _to_axes(axes, curve["x"], curve["y"])
-        steps = np.linspace(0, 1, 40)[:, None]
+        steps = np.linspace(0, 1, 12)[:, None]
         for a, b in zip(at[:-1], at[1:]):
             out.append(a + steps * (b - a))
         out.append(at)
@@ -48,6 +48,16 @@ def _anchor(axes, curves, slope):
     return _to_axes(axes, near["x"], near["y"]).mean(axis=0)
 
 
+def _corners(height, anchor):
+    """Lower left corners inside the axes, nearest to the anchor first and rather below it."""
+    places = [(x, y) for x in np.arange(0.03, 0.91 - WIDTH, 0.03)
+              for y in np.arange(0.08, 0.97 - height, 0.03)]
+    def cost(place):
+        away = np.array([place[0] + WIDTH / 2, place[1] + height / 2]) - anchor
+        return np.hypot(*away) + (0.1 if away[1] > 0 else 0)
+    return sorted(places, key=cost)
+
+
 def place(axes, curves, slopes):
     """[(slope, (x, y) of the lower left corner, height)] in axes fractions; one that finds no
     free place is left out."""
@@ -57,21 +67,12 @@ def place(axes, curves, slopes):
         height = _rise(axes, slope)
         if not 0.02 < height < 0.6:
             continue
-        anchor = _anchor(axes, curves, slope)
-        best, best_cost = None, np.inf
-        for x in np.arange(0.03, 0.97 - WIDTH - 0.06, 0.03):
-            for y in np.arange(0.08, 0.97 - height, 0.03):
-                area = _area((x, y), height)
-                gap = np.sqrt(((area[:, None] - taken[None]) ** 2).sum(-1).min())
-                centre = np.array([x + WIDTH / 2, y + height / 2])
-                if gap < CLEAR:
-                    continue
-                cost = np.hypot(*(centre - anchor)) + (0.1 if centre[1] > anchor[1] else 0)
-                if cost < best_cost:
-                    best, best_cost = (x, y), cost
-        if best is not None:
-            placed.append((slope, best, height))
-            taken = np.concatenate([taken, _area(best, height)])
+        for corner in _corners(height, _anchor(axes, curves, slope)):
+            area = _area(corner, height)
+            if ((area[:, None] - taken[None]) ** 2).sum(-1).min() >= CLEAR ** 2:
+                placed.append((slope, corner, height))
+                taken = np.concatenate([taken, area])
+                break
     return placed
 
 

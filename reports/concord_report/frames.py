@@ -4,6 +4,7 @@ from pathlib import Path
 
 from .loading import InputError, number, read_json
 
+EYE = (0.62, -1.0, 0.55)  # direction to the eye in three dimensions
 POINT_CELL = 1  # VTK_VERTEX: the frame of a particle method
 
 
@@ -94,6 +95,19 @@ def facts(path, color, scale):
         return {"missing": f"every value of '{color}' is NaN"}
     low, high = good_positions.min(axis=0), good_positions.max(axis=0)
     flat = bool(high[2] - low[2] < 1e-9 * max((high - low).max(), 1e-300))
-    return {"range": [float(good.min()), float(good.max())], "low": low.tolist(),
-            "high": high.tolist(), "flat": flat, "points": len(positions),
+    def seen(axes):
+        along = good_positions @ np.array(axes).T
+        return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
+    return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)), "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
             "particles": is_particles(frame), "nan": int(len(data) - len(good))}
+
+
+def view_axes(flat):
+    """Rows: the unit vectors to the right, upwards, and towards the eye, of every picture."""
+    import numpy as np
+    if flat:
+        return np.eye(3)
+    away = np.array(EYE) / np.linalg.norm(EYE)
+    right = np.cross((0.0, 0.0, 1.0), away)
+    right /= np.linalg.norm(right)
+    return np.array([right, np.cross(away, right), away])

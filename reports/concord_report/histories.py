@@ -3,7 +3,7 @@
 import csv
 
 from .cases import chosen
-from .digits import pretty
+from .digits import exact
 from .loading import InputError, number
 
 MOST_CURVES = 12  # beyond that only the finest level of each case is drawn
@@ -81,7 +81,7 @@ def history_curves(study, cases, plot):
         series = next(filter(None, (_series(study, r, plot["quantity"]) for r in level.rows)), None)
         if series:
             several = len({id(l) for c, l in picked if c is case}) > 1
-            label = f"{case.label}, L/{pretty(level.resolution)}" if several else case.label
+            label = f"{case.label}, L/{exact(level.resolution)}" if several else case.label
             curves.append({"case": case.index, "method": case.method, "style": case.style,
                            "label": label, "x": series[0], "y": series[1], "rank": rank,
                            "low": None, "high": None, "slope": None})

@@ -91,7 +91,7 @@ def junit(studies):
             ours, bound = measured_text(claim.get("measured"), claim.get("unit")), bound_text(claim)
             told = f"{claim['statement']}: measured {ours}, bound {bound}"
             if verdict(claim) == "fail":
-                ET.SubElement(case, "failure", message=told).text = claim.get("note") or told
+                ET.SubElement(case, "failure", message=told).text = claim.get("note") or claim.get("reason") or told
             elif verdict(claim) == "open":
                 ET.SubElement(case, "skipped", message=f"not judged: {told}")
     ET.indent(root)

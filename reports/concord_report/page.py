@@ -21,7 +21,7 @@ def slug(name):
 
 def _claim_view(claim):
     return {"id": claim["id"], "statement": claim["statement"], "source": claim.get("source") or "",
-            "source_value": tables.source_text(claim), "note": claim.get("note") or "",
+            "source_value": tables.source_text(claim), "note": tables.typeset(claim.get("note") or claim.get("reason") or ""),
             "measured": tables.measured_text(claim.get("measured"), claim.get("unit")),
             "bound": tables.bound_text(claim), "verdict": verdict(claim)}
 
@@ -53,7 +53,7 @@ def _pictures(jobs, name):
         told = variant_text(job["picture"].get("caption") or "")
         group["pictures"].append({
             "uri": pictures.data_uri(job), "width": job["width"], "height": job["height"],
-            "caption": told, "parts": parts, "swatch": swatch(case.method, case.style),
+            "caption": told, "parts": [p.replace(" ", "\u00a0") for p in parts], "swatch": swatch(case.method, case.style),
             "alt": f"{case.label}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
                    f"{bar['unit']}".strip()})
     return list(groups.values()), missing

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from . import cache, frames
 from .cases import chosen
-from .digits import engineering, plain, pretty, ticks
+from .digits import engineering, exact, pretty, ticks
 from .loading import number
 from .palette import RED_BLUE, VIRIDIS
 from .quantities import field_name
@@ -74,9 +74,11 @@ def _share_scales(jobs):
     of one field the colours as well, unless a common scale would leave some of them in one hue."""
     for job in jobs:
         alike = [j for j in jobs if j["scene"] == job["scene"]]
-        job["view"] = {"low": [min(j["low"][k] for j in alike) for k in range(3)],
-                       "high": [max(j["high"][k] for j in alike) for k in range(3)],
-                       "flat": all(j["flat"] for j in alike)}
+        flat = all(j["flat"] for j in alike)
+        room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
+        seen = [j["seen_flat" if flat else "seen"] for j in alike]
+        job["view"] = {"flat": flat, "low": [min(s[0][k] for s in seen) - room for k in range(3)],
+                       "high": [max(s[1][k] for s in seen) + room for k in range(3)]}
         same = [j for j in alike if j["color"] == job["color"]]
         sizes = [max(map(abs, j["range"])) for j in same]
         shared = min(sizes) > 0 and max(sizes) / min(sizes) <= SHARED_UP_TO
@@ -160,12 +162,12 @@ def caption(job):
     """The caption's factual half: method, spacing, time, exaggeration."""
     case, parts = job["case"], [job["case"].label]
     if job["h"]:
-        parts.append(f"h = {pretty(job['h'])} m")
+        parts.append(f"h = {exact(job['h'])} m")
     if job["time"]:
         factor, unit = engineering(job["time"], "s")
-        parts.append(f"t = {plain(job['time'] * factor, 3)} {unit}")
+        parts.append(f"t = {exact(job['time'] * factor)} {unit}")
     if job["scale"] != 1:
-        parts.append(f"displacement ×{pretty(job['scale'])}")
+        parts.append(f"displacement ×{exact(job['scale'])}")
     if job.get("how") == "scatter":
         parts.append("plain scatter plot, because VTK or xvfb is not installed")
     if job["nan"]:
@@ -186,7 +188,7 @@ def bar(job):
     marks = []
     for value in ticks(low * factor, high * factor, 5):
         marks.append((round((value - low * factor) / ((high - low) * factor), 4),
-                      pretty(float(f"{value:.6g}") + 0.0)))
+                      exact(float(f"{value:.6g}") + 0.0)))
     return {"name": name, "unit": unit or scale_text, "marks": marks,
             "stops": RED_BLUE if job["diverging"] else VIRIDIS,
             "low": pretty(low * factor), "high": pretty(high * factor)}

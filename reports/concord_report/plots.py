@@ -56,6 +56,7 @@ def convergence(study, cases, plot):
     wanted = number(plot.get("slope"))
     return {"scales": ["log", "log"], "xlabel": "mean spacing h [m]", "ylabel": axis(plot["quantity"]),
             "curves": curves, "title": plot.get("title") or f"{_capital(name)} against spacing",
+            "note": "Fitted orders in brackets." if orders else "",
             "triangles": [wanted] if wanted else _nominal(orders),
             "alt": f"Log-log plot of {name} against mean spacing h."
                    + (f" Fitted orders: {told}." if told else "")}
@@ -72,6 +73,7 @@ def cost(study, cases, plot):
     if not curves:
         return f"no run of this report has {plot['quantity']} and a run time"
     name = name_and_unit(plot["quantity"])[0]
+    curves = [{**c, "slope": None} for c in curves]  # an order is against h, not against time
     threads = sorted({str(t) for t in (dig(r, "threads") for c in cases for r in c.rows) if t})
     on = f", {' or '.join(threads)} thread{'s' if threads != ['1'] else ''}" if threads else ""
     best = "; ".join(f"{c['label']} {pretty(c['y'][-1], 2)} in {pretty(c['x'][-1], 2)} s" for c in curves)

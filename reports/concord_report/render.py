@@ -15,14 +15,10 @@ QUALITY = 86  # of WebP: no visible loss on smooth shading
 
 
 def encode(pixels):
-    """(format, bytes) of an RGBA array, cropped to what is drawn, as WebP where PIL can."""
+    """(format, bytes, size) size of an RGBA array, as WebP where PIL can."""
     from PIL import Image, features
-    image = Image.fromarray(pixels, "RGBA")
-    box = image.getchannel("A").point(lambda a: 255 if a > 8 else 0).getbbox()
-    if box:
-        edge = 6
-        image = image.crop((max(0, box[0] - edge), max(0, box[1] - edge),
-                            min(image.width, box[2] + edge), min(image.height, box[3] + edge)))
+    image = Image.fromarray(pixels, "RGBA").convert("RGBa")  # averaging wants premultiplied alpha
+    image = image.reduce(2).convert("RGBA")
     stream = io.BytesIO()
     if features.check("webp"):
         image.save(stream, "WEBP", quality=QUALITY, method=5)
@@ -39,7 +35,10 @@ def main():
         from concord_report.render_scatter import draw
     for job in jobs:
         frame = frames.read(job["path"])
-        kind, data, size = encode(draw(frame, job))
+        pixels = draw(frame, job)
+        if not pixels[..., 3].any():
+            raise RuntimeError(f"the picture of {job['path']} came out empty")
+        kind, data, size = encode(pixels)
         head = {"format": kind, "how": sys.argv[2], "width": size[0], "height": size[1]}
         Path(job["out"]).write_bytes(json.dumps(head).encode() + b"\n" + data)
 

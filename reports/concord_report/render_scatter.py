@@ -16,19 +16,20 @@ def draw(frame, job):
     data = frames.values(frame, job["color"])
     good = np.isfinite(positions).all(axis=1)
     positions, data = positions[good], data[good]
-    figure = Figure(figsize=(9.6, 7.2), dpi=100)
+    figure = Figure(figsize=(8.8, 6.6), dpi=200)
     canvas = FigureCanvasAgg(figure)
     figure.patch.set_alpha(0)
     look = {"c": data, "cmap": LinearSegmentedColormap.from_list("page", job["stops"]),
-            "norm": Normalize(*job["limits"]), "s": max(3.0, min(120.0, 60000.0 / len(data))),
+            "norm": Normalize(*job["limits"]), "s": max(4.0, min(120.0, 90000.0 / len(data))), "alpha": 1,
             "linewidths": 0}
     if job["view"]["flat"]:
         axes = figure.add_axes([0, 0, 1, 1], aspect="equal")
         axes.scatter(positions[:, 0], positions[:, 1], **look)
     else:
         axes = figure.add_axes([0, 0, 1, 1], projection="3d", elev=25, azim=-58)
+        axes.patch.set_alpha(0)
         axes.scatter(*positions.T, **look)
-        axes.set_box_aspect(np.maximum(np.array(job["view"]["high"]) - job["view"]["low"], 1e-300))
+        axes.set_box_aspect(np.maximum(np.ptp(positions, axis=0), 1e-300), zoom=1.35)
     axes.set_axis_off()
     canvas.draw()
     return np.asarray(canvas.buffer_rgba()).copy()

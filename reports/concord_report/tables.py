@@ -3,7 +3,7 @@
 import re
 
 from .cases import fit_of, local_orders
-from .digits import DASH, SUPERSCRIPTS, column, pretty
+from .digits import DASH, SUPERSCRIPTS, between, column, exact_column, pretty, takes_powers
 from .loading import dig, number
 from .palette import swatch
 from .quantities import axis, name_and_unit
@@ -28,15 +28,22 @@ def number_column(label, values, digits=3, texts=None):
 def table(caption, columns, note=""):
     """Columns that are None are left out: a column with nothing in it tells nothing."""
     columns = [c for c in columns if c]
-    return {"caption": caption, "columns": columns, "note": note,
-            "rows": list(zip(*[c["cells"] for c in columns]))}
+    rows = list(zip(*[c["cells"] for c in columns]))
+    starts = [i == 0 or row[0]["text"] != rows[i - 1][0]["text"] for i, row in enumerate(rows)]
+    grouped = sum(starts) < len(rows)
+    return {"caption": caption, "columns": columns, "note": note, "rows": rows,
+            "starts": [grouped and s for s in starts]}
 
 
 def spread_texts(spreads):
-    """"min to max" a cell, both ends in one notation; a dash with fewer than two seeds."""
-    flat = [v for s in spreads if s for v in s]
-    texts = iter(column(flat, 3)) if flat else iter(())
-    return [f"{next(texts).strip()} to {next(texts)}" if s else DASH for s in spreads]
+    """"(1.47 to 1.70)×10⁻²" a cell; a dash with fewer than two seeds."""
+    powers = takes_powers([v for s in spreads if s for v in s])
+    return [between(*s, powers) if s else DASH for s in spreads]
+
+
+def spacing_column(levels):
+    spacings = [level.h for level in levels]
+    return number_column("h [m]", spacings, texts=exact_column(spacings))
 
 
 def quantities_with_levels(study):
@@ -67,21 +74,19 @@ def convergence_table(study, cases, path):
     return table(
         f"Convergence: {axis(path)}",
         [_case_column(pairs),
-         number_column("h [m]", [l.h for _, l in pairs], 3),
+         spacing_column([l for _, l in pairs]),
          number_column("unknowns", [_typical(l, "unknowns") for _, l in pairs]),
          number_column(f"error [{unit}]" if unit else "error" if path.startswith("errors.") else name,
                        [l.mean(path) for _, l in pairs]),
-         number_column("least to most", [s and s[1] for s in spreads], texts=spread_texts(spreads)),
+         number_column("range over the seeds", [s and s[1] for s in spreads], texts=spread_texts(spreads)),
          number_column("seeds", [len(l.rows) for _, l in pairs]) if seeds != [1] else None,
          number_column("local order", [orders[c.index][c.levels.index(l)] for c, l in pairs], 3),
          number_column("fitted order", [f and f.get("slope") for f in fits], 3),
          number_column("R²", [f and f.get("r2") for f in fits], 4),
          number_column("run time [s]", [l.mean("wall_s") for _, l in pairs], 3),
-         number_column("set-up [s]", [l.mean("setup_s") for _, l in pairs], 3),
-         number_column("a particle a step [ns]", [l.mean("ns_per_particle_step") for _, l in pairs], 3),
-         number_column("memory [MB]", [l.mean("peak_rss_mb") for _, l in pairs], 3)],
-        "Values are means over the seeds; “least to most” is the spread between them. The local "
-        "order is taken against the line before; the fitted order stands on the finest line of its case."
+         number_column("ns a particle a step", [l.mean("ns_per_particle_step") for _, l in pairs], 3)],
+        "Errors are means over the seeds. The local order is taken against the line before; the "
+        "fitted order stands on the finest line of its case."
         if seeds != [1] else
         "The local order is taken against the line before; the fitted order stands on the finest "
         "line of its case.")
@@ -107,7 +112,7 @@ def results_table(study, cases):
     pairs = [(c, l) for c in cases for l in c.levels if any(l.values(p) for p in paths)]
     if not pairs:
         return None
-    columns = [_case_column(pairs), number_column("h [m]", [l.h for _, l in pairs]),
+    columns = [_case_column(pairs), spacing_column([l for _, l in pairs]),
                number_column("seeds", [len(l.rows) for _, l in pairs])]
     for path in paths:
         spreads = [l.spread(path) for _, l in pairs]
@@ -124,11 +129,11 @@ def invariants_table(cases):
     """Largest drift over the seeds on the finest level of each case."""
     pairs = [(c, c.levels[-1]) for c in cases if c.levels]
     names = sorted({k for c, l in pairs for r in l.rows for k in (r.get("invariants") or {})},
-                   key=lambda n: (n not in DRIFTS, n))
+                   key=lambda n: (DRIFTS.index(n) if n in DRIFTS else len(DRIFTS), n))
     pairs = [(c, l) for c, l in pairs if any(l.values(f"invariants.{n}") for n in names)]
     if not pairs:
         return None
-    columns = [_case_column(pairs), number_column("h [m]", [l.h for _, l in pairs])]
+    columns = [_case_column(pairs), spacing_column([l for _, l in pairs])]
     for name in names:
         worst = [max(map(abs, l.values(f"invariants.{name}")), default=None) for _, l in pairs]
         columns.append(number_column(axis(name), worst, 2))
@@ -147,7 +152,8 @@ def references_table(study, label):
          number_column("value", [e.get("value") for e in entries], 4),
          number_column("observed order", [e.get("order") for e in entries]),
          number_column("GCI, relative", [e.get("gci") for e in entries], 2),
-         number_column("safety factor", [e.get("safety") for e in entries]),
+         number_column("safety factor", [e.get("safety") for e in entries],
+                       texts=exact_column([e.get("safety") for e in entries])),
          text_column("in words", [e.get("text") or "" for e in entries])],
         "GCI: grid convergence index from three levels, with the safety factor of Roache’s rule.")
 
@@ -162,7 +168,8 @@ def runs_table(cases):
     return table(
         "Every run",
         [text_column("case", [c.label for c, _ in rows], head=True),
-         numbers("resolution", "resolution"), numbers("seed", "seed"), numbers("particles", "particles"),
+         number_column("resolution", [r.get("resolution") for _, r in rows],
+                       texts=exact_column([r.get("resolution") for _, r in rows])), numbers("seed", "seed"), numbers("particles", "particles"),
          numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
          numbers("end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
          numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
@@ -210,16 +217,16 @@ def bound_text(claim):
         return f"≤ {measured_text(high, unit)}" if high is not None else DASH
     if number(bound) is not None:
         return measured_text(bound, unit)
-    return _typeset(str(bound)) if bound else DASH
+    return typeset(str(bound)) if bound else DASH
 
 
 def source_text(claim):
     """The source's value in the source's own words."""
     value = claim.get("source_value")
-    return measured_text(value) if number(value) is not None else _typeset(str(value or DASH))
+    return measured_text(value) if number(value) is not None else typeset(str(value or DASH))
 
 
-def _typeset(words):
+def typeset(words):
     """">= 1e-10 N" -> "≥ 10⁻¹⁰ N": as the numbers beside it are set."""
     words = words.replace(">=", "≥").replace("<=", "≤")
     def power(match):

@@ -21,6 +21,7 @@
     var rows = Array.prototype.map.call(body.rows, function (row) {
       return { row: row, value: value(row.cells[column]) };
     });
+    table.classList.add("sorted");
     rows.sort(function (a, b) { return compare(a.value, b.value, sign); });
     rows.forEach(function (entry) { body.appendChild(entry.row); });
     head.parentNode.querySelectorAll("th").forEach(function (th) { th.removeAttribute("aria-sort"); });

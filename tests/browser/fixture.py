@@ -85,7 +85,7 @@ def cube(folder):
                 if n == 16 and seed == 1 and (method, variant) in (("delaunay", "xi 1, 25 %"), ("fem", "Q2"),
                                                                    ("tlsph", "support 2")):
                     made["run"] = f"runs/{method}-{n}"
-                    cube_frame(folder / made["run"], 12, method == "fem", error)
+                    cube_frame(folder / made["run"], 16, method == "fem", error)
                 rows.append(made)
         fits.append({"method": method, "variant": variant, "quantity": "errors.displacement_l2",
                      "slope": order, "r2": 0.9987, "intercept": math.log(factor)})
