@@ -71,7 +71,7 @@ struct Place {
   Index other;
   const Bond* bond;
   bool reversed;  ///< seen from bond->b
-  double stiffness;
+  double area_over_length;
 };
 
 void append(const Body& body, BondRows& rows, const Place& p, bool surface) {
@@ -81,7 +81,7 @@ void append(const Body& body, BondRows& rows, const Place& p, bool surface) {
   const auto record = [&](Column& column, const Vec3& B) {
     double r[bond_record] = {0, 0, 0, 0};
     for (int i = 0; i < body.dim; ++i) r[i] = B[i];
-    r[body.dim] = p.stiffness;
+    r[body.dim] = p.area_over_length;
     column.insert(column.end(), r, r + bond_record);
   };
   record(rows.B, forward);
@@ -105,7 +105,7 @@ void fill_rows(const Body& body, BondRows& rows, Index row_count, const std::vec
 
 }  // namespace
 
-Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::vector<double>& normal_stiffness) {
+Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::vector<double>& area_over_length) {
   const std::vector<Index> begin = fixed_blocks(body.n);
   const Index block_count = static_cast<Index>(begin.size()) - 1;
   const auto block_of = [&](Index a) {
@@ -115,11 +115,11 @@ Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::v
   for (std::size_t k = 0; k < bonds.size(); ++k) {
     const Bond& bond = bonds[k];
     const bool surface = body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
-    const double K = normal_stiffness.empty() ? 0.0 : normal_stiffness[k];
+    const double ratio = area_over_length.empty() ? 0.0 : area_over_length[k];
     const Index block_a = block_of(bond.a), block_b = block_of(bond.b);
     const bool cut = block_a != block_b;
-    places[block_a][surface].push_back({block_a, bond.a - begin[block_a], cut, bond.b, &bond, false, K});
-    if (cut) places[block_b][surface].push_back({block_b, bond.b - begin[block_b], true, bond.a, &bond, true, K});
+    places[block_a][surface].push_back({block_a, bond.a - begin[block_a], cut, bond.b, &bond, false, ratio});
+    if (cut) places[block_b][surface].push_back({block_b, bond.b - begin[block_b], true, bond.a, &bond, true, ratio});
   }
   Bonds result;
   result.count = bonds.size();
@@ -137,6 +137,25 @@ Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::v
     fill_rows(body, block.surface, block.last - block.first, places[k][1], true);
   }
   return result;
+}
+
+GradientRows directed_rows(const Body& body, const std::vector<Bond>& bonds) {
+  GradientRows rows;
+  rows.begin.assign(body.n + 1, 0);
+  for (const Bond& bond : bonds) ++rows.begin[bond.a + 1], ++rows.begin[bond.b + 1];
+  for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
+  rows.neighbour.resize(rows.begin.back());
+  rows.g.resize(rows.begin.back());
+  std::vector<std::size_t> next(rows.begin.begin(), rows.begin.end() - 1);
+  const auto add = [&](Index a, Index b, const Vec3& B) {
+    rows.neighbour[next[a]] = b;
+    rows.g[next[a]++] = B / body.V[a];
+  };
+  for (const Bond& bond : bonds) {
+    add(bond.a, bond.b, bond.B_ab);
+    add(bond.b, bond.a, bond.B_ba);
+  }
+  return rows;
 }
 
 }  // namespace concord::particle::delaunay

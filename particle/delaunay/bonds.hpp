@@ -2,12 +2,13 @@
 // Gradient vectors B_ab (27) of the Delaunay method, stored as the kernels read them: each bond once, in rows.
 
 #include "particle/core/body.hpp"
+#include "particle/core/tangent.hpp"
 
 #include <vector>
 
 namespace concord::particle::delaunay {
 
-/// Doubles in a bond record: B_ab (dim), then the normal contact stiffness K_n, then zero.
+/// Doubles in a bond record: B_ab (dim), then A_ab / L_ab of Eq. (60) (0 without contact), then zero.
 inline constexpr int bond_record = 4;
 
 /// Bonds of the particles of one block, by rows of the lower-numbered particle (inner bonds), followed by bonds that leave
@@ -16,7 +17,7 @@ struct BondRows {
   std::vector<Index> begin;  ///< row of particle first + r: bonds [begin[r], begin[r+1])
   std::vector<Index> cut;    ///< of these, [cut[r], begin[r+1]) leave the block
   std::vector<Index> other;  ///< b of each bond
-  Column B;                  ///< records of bond_record doubles: B_ab and K_n
+  Column B;                  ///< records of bond_record doubles: B_ab and A_ab / L_ab
   Column B_reverse;          ///< surface bonds only: records with B_ba, which is not -B_ab
 };
 
@@ -45,7 +46,10 @@ std::vector<Bond> gradient_vectors(const Body& body);
 /// a length, has 3.
 double interface_area(int dim, const Bond& bond);
 
-/// Blocks the bonds. normal_stiffness: K_n of each bond [N/m], or empty.
-Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::vector<double>& normal_stiffness);
+/// Blocks the bonds. area_over_length: A_ab / L_ab of each bond [m], or empty.
+Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::vector<double>& area_over_length);
+
+/// H_a = sum_b u_ab (x) B_ab / V_a as directed rows, for the tangent.
+GradientRows directed_rows(const Body& body, const std::vector<Bond>& bonds);
 
 }  // namespace concord::particle::delaunay

@@ -98,7 +98,7 @@ CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameCons
 /// One bond of the contact law (56)-(60): u_loc = u_ab - (H_a + H_b) X_ab / 2 (7), with x_ab = X_ab + u_ab.
 /// Isotropic: K_n = K_t (59).
 template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum, double K_n, double ratio,
+CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum, double K_n, double K_t,
                                 Vec<Dim>& p, Vec<Dim>& q) {
   double X_component[Lanes<Dim>::stride];
   particle::store(X_component, X_ab);
@@ -107,7 +107,6 @@ CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>&
     p = q = local * broadcast(K_n, Vec<Dim>{});
   } else {
     const Vec<Dim> x_ab = X_ab + u_ab;
-    const double K_t = ratio * K_n;
     const double s = lane_sum(local * x_ab) / lane_sum(x_ab * x_ab);
     const Vec<Dim> normal = x_ab * broadcast(s, Vec<Dim>{});
     const Vec<Dim> tangential = local - normal;
@@ -116,15 +115,21 @@ CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>&
   }
 }
 
+/// K_n = normal A_ab / L_ab, K_t = tangential A_ab / L_ab (60): xi_n E and xi_t G [Pa].
+struct ContactFactors {
+  double normal, tangential;
+};
+
 /// State that the contact pass reads and writes.
 struct ContactColumns {
-  const double *X, *u, *H, *half_inverse_V;  ///< half_inverse_V: 1/(2 V_a)
+  const double *X, *u, *H, *inverse_V;
   double *P, *f;
 };
 
 /// f_a += p_ab and P_a += Q_a / V_a with Q_a = -1/2 sum_b q_ab (x) X_ab (the adjoint of the second-neighbour sum in (50)).
 template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, double ratio, const ContactColumns& s) {
+CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, const ContactFactors& factors,
+                                const ContactColumns& s) {
   const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
   if (begin == end) return;
   const Index a = first + r;
@@ -132,16 +137,17 @@ CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, doub
   const Tensor<Dim> H_a = Tensor<Dim>::load(s.H + a * tensor_size<Dim>);
   Tensor<Dim> P_a = Tensor<Dim>::load(s.P + a * tensor_size<Dim>);
   Vec<Dim> f_a = load<Vec<Dim>>(s.f + a * vector_size<Dim>);
-  const double w_a = s.half_inverse_V[a];
+  const double w_a = 0.5 * s.inverse_V[a];
   for (Index k = begin; k < end; ++k) {
     const Index b = rows.other[k];
-    const double K_n = rows.B[static_cast<std::size_t>(k) * bond_record + Dim];
+    const double area_over_length = rows.B[static_cast<std::size_t>(k) * bond_record + Dim];
     const Vec<Dim> u_ab = load<Vec<Dim>>(s.u + b * vector_size<Dim>) - u_a;
     const Vec<Dim> X_ab = load<Vec<Dim>>(s.X + b * vector_size<Dim>) - X_a;
     Tensor<Dim> H_sum = Tensor<Dim>::load(s.H + b * tensor_size<Dim>);
     for (int i = 0; i < Dim; ++i) H_sum.column[i] += H_a.column[i];
     Vec<Dim> p, q;
-    contact_law<Dim, Isotropic>(u_ab, X_ab, H_sum, K_n, ratio, p, q);
+    contact_law<Dim, Isotropic>(u_ab, X_ab, H_sum, factors.normal * area_over_length,
+                                factors.tangential * area_over_length, p, q);
     double X_component[Lanes<Dim>::stride];
     particle::store(X_component, X_ab);
     f_a += p;
@@ -149,19 +155,18 @@ CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, doub
     if (k >= cut) continue;
     store(s.f + b * vector_size<Dim>, load<Vec<Dim>>(s.f + b * vector_size<Dim>) - p);
     Tensor<Dim> P_b = Tensor<Dim>::load(s.P + b * tensor_size<Dim>);
-    P_b.add_outer(q * broadcast(-s.half_inverse_V[b], Vec<Dim>{}), X_component);
+    P_b.add_outer(q * broadcast(-0.5 * s.inverse_V[b], Vec<Dim>{}), X_component);
     P_b.store(s.P + b * tensor_size<Dim>);
   }
   P_a.store(s.P + a * tensor_size<Dim>);
   store(s.f + a * vector_size<Dim>, f_a);
 }
 
-/// ratio: K_t / K_n, the same for all bonds (60).
 template <int Dim, bool Isotropic>
-CONCORD_CLONES void contact(const BondBlock& block, double ratio, const ContactColumns& s) {
+CONCORD_CLONES void contact(const BondBlock& block, const ContactFactors& factors, const ContactColumns& s) {
   const Index rows = block.last - block.first;
-  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.surface, block.first, r, ratio, s);
-  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.regular, block.first, r, ratio, s);
+  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.surface, block.first, r, factors, s);
+  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.regular, block.first, r, factors, s);
 }
 
 /// f_a += sum_b (P_a B_ab - P_b B_ba) (46); off the surface (P_a + P_b) B_ab.

@@ -1,0 +1,208 @@
+#include "particle/core/leapfrog.hpp"
+
+#include "scene/interrupt.hpp"
+
+#include <chrono>
+#include <cmath>
+
+namespace concord::particle {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// v = keep v + scale f/m, one vector a particle.
+template <int Dim>
+CONCORD_CLONES void kick_range(std::size_t begin, std::size_t end, double keep, double scale, const double* inverse_mass,
+                               const double* f, double* v) {
+  constexpr int S = Lanes<Dim>::stride;
+  for (std::size_t a = begin; a < end; ++a) {
+    const Vec<Dim> force = load<Vec<Dim>>(f + a * S) * broadcast(scale * inverse_mass[a], Vec<Dim>{});
+    store(v + a * S, load<Vec<Dim>>(v + a * S) * broadcast(keep, Vec<Dim>{}) + force);
+  }
+}
+
+CONCORD_CLONES void drift_range(std::size_t begin, std::size_t end, double dt, const double* __restrict v,
+                                double* __restrict u) {
+#pragma omp simd
+  for (std::size_t k = begin; k < end; ++k) u[k] += dt * v[k];
+}
+
+}  // namespace
+
+Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
+                   const ExternalLoads& loads, const Executor& executor, double ramp_time)
+    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads), m_executor(executor),
+      m_ramp(ramp_time), m_work(model.body(), constraints, loads) {
+  const Body& body = model.body();
+  m_u.assign(body.X.size(), 0.0);
+  m_v = m_f = m_u;
+  m_inverse_mass.resize(body.n);
+  for (Index a = 0; a < body.n; ++a) {
+    m_inverse_mass[a] = 1 / body.m[a];
+    const Vec3 X = body.position(a);
+    for (int i = 0; i < body.dim; ++i) {
+      const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
+      if (problem.initial_displacement) m_u[k] = (*problem.initial_displacement)(X, 0)[i];
+      if (problem.initial_velocity) m_v[k] = (*problem.initial_velocity)(X, 0)[i];
+    }
+  }
+  m_constraints.impose(0, m_u);
+  m_constraints.clear(m_v);
+}
+
+void Leapfrog::evaluate() {
+  m_model.forces(m_u, m_v, m_f, m_executor);
+  if (m_loads.none()) return;
+  m_loads.add(load_time(), m_f);
+}
+
+void Leapfrog::kick(double dt, double damping) {
+  const double keep = (1 - 0.5 * damping * dt) / (1 + 0.5 * damping * dt), scale = dt / (1 + 0.5 * damping * dt);
+  const Body& body = m_model.body();
+  m_executor.for_pieces(body.n, [&](std::size_t begin, std::size_t end) {
+    if (body.dim == 3) kick_range<3>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
+    else kick_range<2>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
+  });
+  m_constraints.clear(m_v);
+}
+
+void Leapfrog::drift(double dt) {
+  m_executor.for_pieces(m_u.size(), [&](std::size_t begin, std::size_t end) {
+    drift_range(begin, end, dt, m_v.data(), m_u.data());
+  });
+  m_t += dt;
+  if (!m_constraints.moving()) return;
+  const Body& body = m_model.body();
+  for (const PrescribedDof& dof : m_constraints.dofs()) {
+    const std::size_t k = static_cast<std::size_t>(dof.particle) * body.stride + dof.component;
+    const double u = m_constraints.value(dof, load_time());
+    m_v[k] = (u - m_u[k]) / dt;
+    m_u[k] = u;
+  }
+}
+
+double Leapfrog::critical_step(double dt_factor) {
+  SpectralRadius spectrum(m_model, m_constraints, m_executor);
+  const double omega = spectrum.omega_max(m_u);
+  if (!(omega > 0)) return m_problem.end_time;
+  const double zeta = m_model.viscous_damping_ratio(omega);
+  return dt_factor * 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
+}
+
+double Leapfrog::largest_gradient() const {
+  // A bound that needs no tensors: the largest relative displacement over a bond of the triangulation.
+  const Body& body = m_model.body();
+  const Triangulation& t = body.triangulation;
+  const int nv = t.dim + 1;
+  double largest = 0;
+  for (std::size_t s = 0; s < t.size(); ++s) {
+    const Index* v = &t.simplices[s * nv];
+    for (int k = 1; k < nv; ++k) {
+      double du = 0, dX = 0;
+      for (int i = 0; i < t.dim; ++i) {
+        const std::size_t p = static_cast<std::size_t>(v[k]) * body.stride + i, q = static_cast<std::size_t>(v[0]) * body.stride + i;
+        du += (m_u[p] - m_u[q]) * (m_u[p] - m_u[q]);
+        dX += (body.X[p] - body.X[q]) * (body.X[p] - body.X[q]);
+      }
+      largest = std::max(largest, du / dX);
+    }
+  }
+  return std::sqrt(largest);
+}
+
+State Leapfrog::state() {
+  const Body& body = m_model.body();
+  m_v_full = m_v;
+  m_acceleration.assign(m_f.size(), 0.0);
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
+      m_acceleration[k] = m_f[k] * m_inverse_mass[a] - m_damping * m_v[k];
+    }
+  }
+  m_constraints.clear(m_acceleration);
+  for (std::size_t k = 0; k < m_v.size(); ++k) m_v_full[k] += 0.5 * m_dt_last * m_acceleration[k];
+  State s;
+  s.t = m_problem.is_static ? load_time() : m_t;
+  s.u = m_u;
+  s.v = m_v_full;
+  s.unbalanced = m_f;
+  s.acceleration = m_acceleration;
+  s.external_work = m_work.total(m_u, m_v_full);
+  return s;
+}
+
+bool Leapfrog::settled(double fraction) {
+  Column load(m_f.size(), 0.0);
+  m_loads.add(load_time(), load);
+  double residual = 0, scale = 0;
+  Column free = m_f;
+  m_constraints.clear(free);
+  for (std::size_t k = 0; k < m_f.size(); ++k) {
+    residual += free[k] * free[k];
+    scale += (m_f[k] - load[k]) * (m_f[k] - load[k]);
+  }
+  return residual <= fraction * fraction * scale;
+}
+
+void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome) {
+  m_damping = options.damping;
+  const auto fail = [&](const BadState& bad) {
+    outcome.t = m_t;
+    return SolveError(bad.quantity, outcome.steps, m_t, bad.particle,
+                      bad.quantity == "det F" ? "det F <= 0 or not a number" : "");
+  };
+  try {
+    evaluate();
+    m_work.start(load_time(), m_u, m_f);
+    double dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
+    double gradient = largest_gradient();
+    m_dt_last = 0;
+    recorder.row(state());
+    recorder.frame(state());
+    long rows = 1, frames = 1;
+    auto begin = Clock::now();
+    const auto pause = [&] { outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count(); };
+    const double end = options.end_time;
+    for (outcome.steps = 0; m_t < end;) {
+      const double left = end - m_t;
+      const double step = left / std::ceil(left / dt * (1 - 1e-12));
+      kick(0.5 * (m_dt_last + step), options.damping);
+      drift(step);
+      if (end - m_t < 1e-9 * step) m_t = end;
+      m_dt_last = step;
+      evaluate();
+      if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
+      ++outcome.steps;
+      outcome.t = m_t;
+      outcome.dt = step;
+      const bool last = m_t >= end;
+      const bool row_due = last || (options.history_rows > 0 && m_t >= rows * end / options.history_rows);
+      const bool frame_due = last || (options.frames > 0 && m_t >= frames * end / options.frames);
+      if (row_due || frame_due) {
+        pause();
+        if (row_due) recorder.row(state()), rows = static_cast<long>(m_t / end * options.history_rows) + 1;
+        if (frame_due) recorder.frame(state()), frames = static_cast<long>(m_t / end * options.frames) + 1;
+        if (options.progress) options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
+        begin = Clock::now();
+      }
+      if (options.dt_fixed <= 0 && outcome.steps % 64 == 0) {
+        const double now = largest_gradient();
+        if (std::abs(now - gradient) > options.reestimate_at) {
+          dt = critical_step(options.dt_factor);
+          gradient = now;
+        }
+      }
+      if (options.stop_at_residual > 0 && outcome.steps % 64 == 0 && m_t >= m_ramp && settled(options.stop_at_residual)) {
+        outcome.settled = true;
+        break;
+      }
+      scene::check_interrupt();
+    }
+    pause();
+  } catch (const BadState& bad) {
+    throw fail(bad);
+  }
+}
+
+}  // namespace concord::particle

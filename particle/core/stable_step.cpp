@@ -1,0 +1,100 @@
+#include "particle/core/stable_step.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace concord::particle {
+namespace {
+
+double dot(const Column& a, const Column& b, const Executor& executor) {
+  return executor.sum(a.size(), [&](std::size_t begin, std::size_t end) {
+    double s = 0;
+    for (std::size_t k = begin; k < end; ++k) s += a[k] * b[k];
+    return s;
+  });
+}
+
+void scale(Column& a, double factor) {
+  for (double& x : a) x *= factor;
+}
+
+}  // namespace
+
+SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints, const Executor& executor)
+    : m_model(model), m_constraints(constraints), m_executor(executor) {
+  const Body& body = model.body();
+  m_root.resize(body.n);
+  for (Index a = 0; a < body.n; ++a) m_root[a] = std::sqrt(body.m[a]);
+  m_start.assign(body.X.size(), 0.0);
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      m_start[static_cast<std::size_t>(a) * body.stride + i] = scene::uniform_random(12345, a, i) - 0.5;
+    }
+  }
+}
+
+void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& result) {
+  const Body& body = m_model.body();
+  double largest = 0;
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      largest = std::max(largest, std::abs(w[static_cast<std::size_t>(a) * body.stride + i]) / m_root[a]);
+    }
+  }
+  const double epsilon = 1e-6 * body.h_min / largest;  // displacements of 1e-6 spacings: error about 1e-8 relative
+  for (const double sign : {1.0, -1.0}) {
+    for (Index a = 0; a < body.n; ++a) {
+      for (int i = 0; i < body.stride; ++i) {
+        const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
+        m_shifted[k] = u[k] + sign * epsilon * w[k] / m_root[a];
+      }
+    }
+    m_model.forces(m_shifted, m_velocity, m_force, m_executor);
+    for (Index a = 0; a < body.n; ++a) {
+      const double factor = -sign / (2 * epsilon * m_root[a]);
+      for (int i = 0; i < body.stride; ++i) {
+        const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
+        result[k] = (sign > 0 ? 0.0 : result[k]) + factor * m_force[k];
+      }
+    }
+  }
+  m_constraints.clear(result);
+}
+
+double SpectralRadius::omega_max(std::span<const double> u, double tolerance, int most) {
+  const std::size_t size = u.size();
+  m_shifted.assign(size, 0.0);
+  m_force.assign(size, 0.0);
+  m_velocity.assign(size, 0.0);
+  Column previous(size, 0.0), current = m_start, next(size, 0.0);
+  m_constraints.clear(current);
+  const double norm = std::sqrt(dot(current, current, m_executor));
+  if (norm == 0) return 0;
+  scale(current, 1 / norm);
+  std::vector<double> diagonal, off_diagonal, estimates;
+  for (int it = 0; it < most; ++it) {
+    apply(u, current, next);
+    const double alpha = dot(current, next, m_executor);
+    const double beta_before = off_diagonal.empty() ? 0.0 : off_diagonal.back();
+    for (std::size_t k = 0; k < size; ++k) next[k] -= alpha * current[k] + beta_before * previous[k];
+    diagonal.push_back(alpha);
+    const auto count = static_cast<Eigen::Index>(diagonal.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+    const Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(diagonal.data(), count);
+    const Eigen::VectorXd e = Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), count - 1);
+    eigen.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
+    estimates.push_back(eigen.eigenvalues().maxCoeff());
+    const double beta = std::sqrt(dot(next, next, m_executor));
+    const bool exhausted = !(beta > 1e-9 * std::abs(estimates.back()));
+    const bool settled = it >= 8 && estimates.back() - estimates[it - 5] < tolerance * estimates.back();
+    if (exhausted || settled) break;
+    off_diagonal.push_back(beta);
+    std::swap(previous, current);
+    current = next;
+    scale(current, 1 / beta);
+  }
+  return std::sqrt(std::max(0.0, estimates.back()));
+}
+
+}  // namespace concord::particle

@@ -1,0 +1,239 @@
+#include "particle/core/statics.hpp"
+
+#include "scene/interrupt.hpp"
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/Eigenvalues>
+#include <Eigen/UmfPackSupport>
+
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace concord::particle {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Number of rigid motions (of 6, or 3 in the plane) that the constraints leave free: rank deficiency of the motions'
+/// values on the prescribed components, lengths over the body's size.
+int free_rigid_motions(const Body& body, const Constraints& constraints) {
+  const int count = body.dim == 3 ? 6 : 3;
+  Vec3 centre = Vec3::Zero();
+  double size = 0;
+  for (Index a = 0; a < body.n; ++a) centre += body.position(a) / body.n;
+  for (Index a = 0; a < body.n; ++a) size = std::max(size, (body.position(a) - centre).norm());
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
+  for (const PrescribedDof& dof : constraints.dofs()) {
+    const Vec3 r = (body.position(dof.particle) - centre) / size;
+    Eigen::VectorXd motion = Eigen::VectorXd::Zero(count);
+    motion[dof.component] = 1;
+    if (body.dim == 3) {
+      for (int k = 0; k < 3; ++k) motion[3 + k] = Vec3::Unit(k).cross(r)[dof.component];
+    } else {
+      motion[2] = Vec3::UnitZ().cross(r)[dof.component];
+    }
+    normal += motion * motion.transpose();
+  }
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal).eigenvalues();
+  return static_cast<int>((values.array() < 1e-12 * std::max(1.0, values.maxCoeff())).count());
+}
+
+}  // namespace
+
+struct Statics::Factors {
+  Eigen::CholmodSupernodalLLT<Sparse> cholesky;
+  Eigen::UmfPackLU<Sparse> lu;
+  Sparse free_free, free_prescribed;
+  bool analysed = false, use_lu = false;
+};
+
+Statics::Statics(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
+                 const ExternalLoads& loads, const Executor& executor)
+    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads), m_executor(executor),
+      m_work(model.body(), constraints, loads), m_factors(std::make_unique<Factors>()) {
+  const Body& body = model.body();
+  if (const int rigid = free_rigid_motions(body, constraints); rigid > 0) {
+    throw InputError({problem.file.string(), 0, 0}, "boundary",
+                     fmt::format("displacement conditions that leave {} rigid motion{} of the body free", rigid,
+                                 rigid > 1 ? "s" : ""),
+                     "for a static scene, [[boundary]] entries (fixed, symmetric, antisymmetric or displacement) that "
+                     "prevent every translation and rotation");
+  }
+  m_u.assign(body.X.size(), 0.0);
+  m_v = m_f = m_u;
+  m_equation.assign(static_cast<std::size_t>(body.n) * body.dim, 0);
+  for (const PrescribedDof& dof : constraints.dofs()) m_equation[dof.particle * body.dim + dof.component] = -1;
+  for (Index& e : m_equation) e = e < 0 ? -1 : m_free++;
+}
+
+Statics::~Statics() = default;
+
+/// Norm of the unbalanced force on free components; m_scale receives that of the internal forces.
+double Statics::evaluate(double t) {
+  const Body& body = m_model.body();
+  m_model.forces(m_u, m_v, m_f, m_executor);
+  double internal = 0, residual = 0;
+  for (const double f : m_f) internal += f * f;
+  m_loads.add(t, m_f);
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      const double f = m_f[static_cast<std::size_t>(a) * body.stride + i];
+      if (m_equation[a * body.dim + i] >= 0) residual += f * f;
+    }
+  }
+  m_scale = std::max(m_scale, std::sqrt(internal));
+  return std::sqrt(residual);
+}
+
+bool Statics::try_displacement(const Column& trial, double t, double& residual) {
+  m_u = trial;
+  try {
+    residual = evaluate(t);
+  } catch (const BadState& bad) {
+    m_failure = fmt::format("{} <= 0 at particle {}", bad.quantity, bad.particle);
+    return false;
+  }
+  return std::isfinite(residual);
+}
+
+/// Factorises the tangent at m_u and solves for the correction of the free components; `correction` holds the prescribed
+/// increments on entry when `lift`.
+void Statics::solve(const Column& right, Column& correction, bool lift) {
+  const Body& body = m_model.body();
+  const Sparse K = m_model.tangent(m_u);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd b(m_free), lifted = Eigen::VectorXd::Zero(m_free);
+  entries.reserve(K.nonZeros());
+  for (int c = 0; c < K.outerSize(); ++c) {
+    const double moved = correction[static_cast<std::size_t>(c / body.dim) * body.stride + c % body.dim];
+    for (Sparse::InnerIterator it(K, c); it; ++it) {
+      const Index row = m_equation[it.row()], column = m_equation[c];
+      if (row < 0) continue;
+      if (column >= 0) entries.emplace_back(row, column, it.value());
+      else if (lift) lifted[row] += it.value() * moved;
+    }
+  }
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      const Index e = m_equation[a * body.dim + i];
+      if (e >= 0) b[e] = right[static_cast<std::size_t>(a) * body.stride + i] - lifted[e];
+    }
+  }
+  Factors& f = *m_factors;
+  f.free_free.resize(m_free, m_free);
+  f.free_free.setFromTriplets(entries.begin(), entries.end());
+  Eigen::VectorXd x;
+  bool solved = false;
+  if (m_model.has_potential()) {
+    if (!f.analysed) f.cholesky.analyzePattern(f.free_free);
+    f.analysed = true;
+    f.cholesky.factorize(f.free_free);
+    solved = f.cholesky.info() == Eigen::Success;
+    if (solved) x = f.cholesky.solve(b);
+  }
+  if (!solved) {
+    f.lu.compute(f.free_free);
+    if (f.lu.info() != Eigen::Success) throw BadState{"tangent stiffness (singular)", -1};
+    x = f.lu.solve(b);
+  }
+  for (Index a = 0; a < body.n; ++a) {
+    for (int i = 0; i < body.dim; ++i) {
+      const Index e = m_equation[a * body.dim + i];
+      if (e >= 0) correction[static_cast<std::size_t>(a) * body.stride + i] = x[e];
+    }
+  }
+}
+
+bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& outcome) {
+  const Column start = m_u;
+  Column correction(m_u.size(), 0.0), trial = m_u;
+  m_constraints.impose(t, trial);
+  for (std::size_t k = 0; k < trial.size(); ++k) correction[k] = trial[k] - m_u[k];
+  double residual = 0, before = 0;
+  const auto give_up = [&] {
+    m_u = start;
+    return false;
+  };
+  // Predictor: loads of the new step on the old state.
+  if (!try_displacement(Column(start), t, before)) return give_up();
+  if (m_free == 0) return try_displacement(trial, t, residual);
+  solve(Column(m_f), correction, true);
+  for (int it = 1; it <= options.most_iterations; ++it) {
+    ++outcome.iterations;
+    const Column base = m_u;
+    double length = 1;
+    bool accepted = false;
+    for (int halving = 0; halving < 12 && !accepted; ++halving, length *= 0.5) {
+      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] = base[k] + length * correction[k];
+      if (it == 1) m_constraints.impose(t, trial);
+      // The first correction brings the prescribed motion in and may raise the residual.
+      accepted = try_displacement(trial, t, residual) && (it == 1 || residual < before || residual <= options.tolerance * m_scale);
+    }
+    const bool small = before <= 100 * options.tolerance * m_scale;
+    if (!accepted && it > 1 && small) {  // stagnation at round-off
+      double again = 0;
+      return try_displacement(base, t, again);
+    }
+    if (!accepted) return give_up();
+    if (it > 1 && residual <= options.tolerance * m_scale && residual > 0.25 * before) return true;
+    if (residual == 0) return true;
+    before = residual;
+    std::fill(correction.begin(), correction.end(), 0.0);
+    solve(Column(m_f), correction, false);
+    scene::check_interrupt();
+  }
+  m_failure = fmt::format("residual {:.3g} of {:.3g} after {} iterations", residual, m_scale, options.most_iterations);
+  return before <= 100 * options.tolerance * m_scale || give_up();
+}
+
+State Statics::state() const {
+  State s;
+  s.t = m_t;
+  s.u = m_u;
+  s.unbalanced = m_f;
+  s.external_work = m_work.total(m_u, {});
+  return s;
+}
+
+void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutcome& outcome) {
+  using Clock = std::chrono::steady_clock;
+  auto begin = Clock::now();
+  const auto pause = [&] { outcome.solve_s += std::chrono::duration<double>(Clock::now() - begin).count(); };
+  (void)evaluate(0);
+  m_work.start(0, m_u, m_f);
+  double step = 1.0 / options.load_steps;
+  const double smallest = step / std::ldexp(1.0, options.most_halvings);
+  int next_frame = 1;
+  while (m_t < 1 - 1e-12) {
+    const double t = std::min(1.0, m_t + step);
+    bool reached = false;
+    try {
+      reached = step_to(t > 1 - 1e-12 ? 1.0 : t, options, outcome);
+    } catch (const BadState& bad) {
+      m_failure = bad.quantity;
+    }
+    if (!reached) {
+      step *= 0.5;
+      if (step >= smallest) continue;
+      pause();
+      throw SolveError("equilibrium", outcome.iterations, m_t, -1,
+                       fmt::format("Newton's method does not converge beyond load parameter {:.6g}: {}", m_t, m_failure));
+    }
+    m_t = t > 1 - 1e-12 ? 1.0 : t;
+    outcome.t = m_t;
+    if (m_work.follows_steps()) m_work.step(m_t, m_u, m_f);
+    pause();
+    recorder.row(state());
+    if (m_t == 1.0 || (options.frames > 0 && m_t >= static_cast<double>(next_frame) / options.frames)) {
+      recorder.frame(state());
+      next_frame = static_cast<int>(m_t * options.frames) + 1;
+    }
+    if (options.progress) options.progress(m_t, "load " + std::to_string(m_t));
+    begin = Clock::now();
+    step = std::min(2 * step, 1.0 / options.load_steps);
+  }
+}
+
+}  // namespace concord::particle
