@@ -187,7 +187,7 @@ int describe_command(const std::string& name) {
   if (found) return 0;
   known.insert(known.end(), scene_names.begin(), scene_names.end());
   known.insert(known.end(), study_list.begin(), study_list.end());
-  throw InputError({"command line"}, "NAME", scene::quoted(name),
+  throw InputError({"command line"}, "NAME", scene::in_quotes(name),
                    scene::allowed_words(name, known));
 }
 

@@ -94,7 +94,7 @@ std::vector<std::string> chosen(const StudyOptions& options) {
   const auto all = study_names(scene::data_home());
   for (const std::string& name : options.studies)
     if (std::find(all.begin(), all.end(), name) == all.end())
-      throw InputError({}, "study", scene::quoted(name), scene::allowed_words(name, all));
+      throw InputError({}, "study", scene::in_quotes(name), scene::allowed_words(name, all));
   return options.studies.empty() ? all : options.studies;
 }
 

@@ -95,7 +95,7 @@ Study read_study(const std::string& name, bool full, const std::filesystem::path
   const auto file = home / "studies" / name / "study.toml";
   const auto names = study_names(home);
   if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError({}, "study", scene::quoted(name), scene::allowed_words(name, names));
+    throw InputError({}, "study", scene::in_quotes(name), scene::allowed_words(name, names));
   Study study = parse_study(file, full);
   study.name = name;
   return study;
@@ -119,7 +119,7 @@ double display_factor(const std::string& unit, const SourcePosition& where) {
   if (found != factors.end()) return found->second;
   std::vector<std::string> words;
   for (const auto& [name, factor] : factors) words.push_back(name);
-  throw InputError(where, "claim.unit", scene::quoted(unit), scene::allowed_words(unit, words));
+  throw InputError(where, "claim.unit", scene::in_quotes(unit), scene::allowed_words(unit, words));
 }
 
 }  // namespace concord::studies
