@@ -1,0 +1,119 @@
+#include "fem_reference/newton.hpp"
+
+#include "fem_reference/linear_solver.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace concord::fem {
+
+template <int dim>
+Newton<dim>::Newton(const ElementTable<dim>& table, const Prescribed<dim>& prescribed,
+                    const Options& options, bool direct)
+    : m_table(table), m_prescribed(prescribed), m_options(options), m_direct(direct),
+      m_given(table.sparsity().n_rows(), 0) {
+  for (std::size_t k = 0; k < prescribed.size(); ++k) m_given[prescribed.dof(k)] = 1;
+  m_K.reinit(table.sparsity());
+}
+
+template <int dim> void Newton<dim>::check(const State& state, long bad_element) const {
+  if (bad_element < 0) return;
+  throw SolveError("det F", state.step, state.t, bad_element, "det F <= 0 or not a number");
+}
+
+/// r = f_ext - f_int - M a, zero at given unknowns; returns its norm.
+template <int dim>
+double Newton<dim>::residual(const State& state, const Inertia* inertia, Vector& r) const {
+  r = state.external;
+  r -= state.internal;
+  if (inertia != nullptr) {
+    Vector a = state.u, Ma(a.size());
+    a -= inertia->predicted;
+    inertia->mass->vmult(Ma, a);
+    r.add(-inertia->factor, Ma);
+  }
+  for (unsigned i = 0; i < r.size(); ++i) {
+    if (m_given[i] != 0) r[i] = 0;
+  }
+  return r.l2_norm();
+}
+
+template <int dim> double Newton<dim>::scale(const State& state, const Inertia* inertia) const {
+  double size = m_table.element_force_norm(state.u) + state.external.l2_norm();
+  if (inertia != nullptr) {
+    Vector a = state.u, Ma(a.size());
+    a -= inertia->predicted;
+    inertia->mass->vmult(Ma, a);
+    size += inertia->factor * Ma.l2_norm();
+  }
+  return size;
+}
+
+/// u += s du with the first s of 1, 1/2, ... that lowers the residual; returns the new norm, or
+/// the old one with u unchanged when none does.
+template <int dim>
+double Newton<dim>::backtrack(State& state, const Vector& du, const Inertia* inertia,
+                              double norm, Vector& r) const {
+  const Vector start = state.u;
+  for (double s = 1; s > 1e-3; s *= 0.5) {
+    state.u = start;
+    state.u.add(s, du);
+    if (m_table.force(state.u, state.internal) >= 0) continue;
+    const double trial = residual(state, inertia, r);
+    if (trial <= (1 - 1e-4 * s) * norm) return trial;
+  }
+  state.u = start;
+  check(state, m_table.force(state.u, state.internal));
+  return residual(state, inertia, r);
+}
+
+template <int dim>
+int Newton<dim>::solve(State& state, const std::vector<double>& given, const Inertia* inertia) {
+  Vector r(state.u.size()), du(state.u.size()), jump(state.u.size());
+  bool moved = true;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    jump[m_prescribed.dof(k)] = given[k] - state.u[m_prescribed.dof(k)];
+  }
+  moved = jump.linfty_norm() > 0;
+  check(state, m_table.force(state.u, state.internal));
+  double norm = residual(state, inertia, r);
+  for (int k = 0; k < m_options.max_iterations; ++k) {
+    if (!moved && norm <= m_options.tolerance * scale(state, inertia)) return k;
+    check(state, m_table.tangent(state.u, state.internal, m_K));
+    if (inertia != nullptr) m_K.add(inertia->factor, *inertia->mass);
+    prescribe(m_K, r, m_given, jump);
+    solve_linear(m_K, r, du, m_direct, inertia != nullptr ? 1e-8 : 1e-10, state.step, state.t);
+    const double before = norm;
+    if (k == 0) {
+      state.u += du;
+      for (std::size_t g = 0; g < given.size(); ++g) state.u[m_prescribed.dof(g)] = given[g];
+      check(state, m_table.force(state.u, state.internal));
+      norm = residual(state, inertia, r);
+    } else {
+      norm = backtrack(state, du, inertia, norm, r);
+    }
+    jump = 0;
+    moved = false;
+    // Round-off floor: no longer falling, and below 1e4 tolerances (1e-8 by default).
+    if (k > 0 && norm > 0.5 * before) {
+      const double size = scale(state, inertia);
+      if (norm <= 1e4 * m_options.tolerance * size) return k + 1;
+      if (norm >= before) {
+        throw SolveError(
+            "residual", state.step, state.t, -1,
+            fmt::format("no descent at a relative residual of {:.2e}", norm / size));
+      }
+    }
+  }
+  const double left = norm / scale(state, inertia);
+  if (left <= m_options.tolerance) return m_options.max_iterations;
+  throw SolveError("residual", state.step, state.t, -1,
+                   fmt::format("{:.2e} of the element forces after {} iterations", left,
+                               m_options.max_iterations));
+}
+
+template class Newton<2>;
+template class Newton<3>;
+
+}  // namespace concord::fem
