@@ -1,0 +1,105 @@
+#pragma once
+// Bodies on which the properties of every particle method are tried.
+
+#include "particle/core/elastic.hpp"
+#include "particle/core/particle_method.hpp"
+#include "scene/reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace concord::particle::test {
+
+/// A method with settings, on a scene at a resolution.
+struct Variant {
+  std::string name;  ///< for the test's name
+  std::string method;
+  std::map<std::string, std::string> settings;
+};
+
+/// Every registered particle method with its defaults, and with the settings that take other paths through its kernels.
+inline std::vector<Variant> variants() {
+  std::vector<Variant> list;
+  for (const scene::Method* method : scene::MethodRegistry::instance().all()) {
+    if (dynamic_cast<const ParticleMethod*>(method)) list.push_back({method->info().name, method->info().name, {}});
+  }
+  list.push_back({"delaunay_xi0", "delaunay", {{"xi_n", "0"}, {"xi_t", "0"}}});
+  list.push_back({"delaunay_xi_isotropic_half", "delaunay", {{"xi_n", "0.5"}, {"xi_t", "1.3"}}});
+  list.push_back({"tlsph_psi0", "tlsph", {{"psi", "0"}}});
+  list.push_back({"tlsph_potential", "tlsph", {{"penalty", "potential"}}});
+  list.push_back({"tlsph_wendland", "tlsph", {{"kernel", "wendland-c2"}, {"support", "2.5"}}});
+  return list;
+}
+
+/// Scene, body and model together, in the order in which they depend on each other.
+struct Bench {
+  scene::Problem problem;
+  Body body;
+  Executor executor{1};
+  std::unique_ptr<ForceModel> model;
+
+  Bench(const Variant& variant, const std::string& scene, double resolution, const std::vector<scene::Override>& set = {},
+        double perturb = 0.25, std::uint64_t seed = 5)
+      : problem(scene::read_problem(scene, set)),
+        body(make_body(problem, problem.reference_length / resolution, perturb, seed)),
+        model(make(variant)) {}
+
+  std::unique_ptr<ForceModel> make(const Variant& variant) const {
+    const auto& method = dynamic_cast<const ParticleMethod&>(scene::MethodRegistry::instance().find(variant.method));
+    const scene::Settings settings(variant.method, method.info().parameters, variant.settings);
+    return method.make_model(body, problem, settings, executor);
+  }
+
+  Column zeros() const { return Column(body.X.size(), 0.0); }
+
+  template <class F>
+  Column column(const F& value) const {
+    Column c = zeros();
+    for (Index a = 0; a < body.n; ++a) {
+      const Vec3 v = value(a);
+      for (int i = 0; i < body.dim; ++i) c[static_cast<std::size_t>(a) * body.stride + i] = v[i];
+    }
+    return c;
+  }
+
+  /// Smooth finite deformation plus noise of `noise` spacings.
+  Column random_displacement(double noise = 0.05, unsigned seed = 3) const {
+    std::mt19937_64 generator(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    return column([&](Index a) {
+      const Vec3 X = body.position(a) / problem.reference_length;
+      Vec3 u(0.2 * X[0] + 0.1 * X[1] * X[1], -0.15 * X[0] * X[1] + 0.1 * X[2], 0.12 * X[0] - 0.1 * X[2]);
+      u *= problem.reference_length;
+      for (int i = 0; i < 3; ++i) u[i] += noise * body.h * uniform(generator);
+      return u;
+    });
+  }
+
+  Column force(const Column& u, int threads = 1) {
+    Column f = zeros();
+    model->forces(u, zeros(), f, Executor(threads));
+    return f;
+  }
+
+  Vec3 at(const Column& c, Index a) const {
+    Vec3 r = Vec3::Zero();
+    for (int i = 0; i < body.dim; ++i) r[i] = c[static_cast<std::size_t>(a) * body.stride + i];
+    return r;
+  }
+};
+
+inline double norm(const Column& c) {
+  double s = 0;
+  for (const double x : c) s += x * x;
+  return std::sqrt(s);
+}
+
+class EveryMethod : public testing::TestWithParam<Variant> {};
+
+inline std::string variant_name(const testing::TestParamInfo<Variant>& info) { return info.param.name; }
+
+}  // namespace concord::particle::test

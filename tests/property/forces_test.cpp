@@ -1,0 +1,182 @@
+// Properties of the forces of every registered particle method.
+
+#include "tests/property/bodies.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cstring>
+
+namespace concord::particle::test {
+namespace {
+
+INSTANTIATE_TEST_SUITE_P(Registered, EveryMethod, testing::ValuesIn(variants()), variant_name);
+
+/// Scale of forces that strains of order one would make.
+double force_scale(const Bench& b) { return b.problem.material.E * b.body.h * b.body.h * std::sqrt(b.body.n); }
+
+TEST_P(EveryMethod, RigidMotionGivesNoForce) {
+  Bench b(GetParam(), "spinning_block", 5);
+  const Mat3 R = Eigen::AngleAxisd(2.0, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
+  const Column u = b.column([&](Index a) { return Vec3((R - Mat3::Identity()) * b.body.position(a) + Vec3(3, -2, 1)); });
+  EXPECT_LT(norm(b.force(u)), 1e-13 * force_scale(b));
+}
+
+TEST_P(EveryMethod, AffineFieldHasExactGradients) {
+  Bench b(GetParam(), "spinning_block", 5);
+  Mat3 H;
+  H << 0.3, 0.1, -0.2, 0.05, -0.2, 0.15, 0.1, -0.1, 0.25;
+  const Column u = b.column([&](Index a) { return Vec3(H * b.body.position(a)); });
+  std::vector<Mat3> computed(b.body.n);
+  b.model->gradients(u, computed);
+  for (const Mat3& Ha : computed) EXPECT_LT((Ha - H).norm(), 2e-13);
+}
+
+/// Interior particles are in equilibrium under constant stress where the gradient vectors satisfy the integration constraint
+/// (31). Methods that cannot say so, and must then really fail.
+TEST_P(EveryMethod, ConstantStressLeavesInteriorInEquilibrium) {
+  Bench b(GetParam(), "spinning_block", 5);
+  Mat3 H;
+  H << 0.02, 0.01, 0, 0.01, -0.01, 0.02, 0, 0.02, 0.03;
+  const Column u = b.column([&](Index a) { return Vec3(H * b.body.position(a)); });
+  const Column f = b.force(u);
+  double interior = 0;
+  for (Index a = 0; a < b.body.n; ++a) {
+    if (!b.body.triangulation.on_boundary[a]) interior = std::max(interior, b.at(f, a).norm());
+  }
+  const double scale = b.problem.material.E * H.norm() * b.body.h * b.body.h;
+  const auto& cannot = scene::MethodRegistry::instance().find(GetParam().method).info().cannot;
+  if (cannot.count("equilibrium patch test")) EXPECT_GT(interior, 1e-6 * scale) << "declared failure did not happen";
+  else EXPECT_LT(interior, 1e-12 * scale);
+}
+
+TEST_P(EveryMethod, ForcesHaveNoResultantAndNoMoment) {
+  Bench b(GetParam(), "spinning_block", 5);
+  const Column u = b.random_displacement();
+  const Column f = b.force(u);
+  Vec3 resultant = Vec3::Zero(), moment = Vec3::Zero();
+  double sum = 0;
+  for (Index a = 0; a < b.body.n; ++a) {
+    resultant += b.at(f, a);
+    moment += (b.body.position(a) + b.at(u, a)).cross(b.at(f, a));
+    sum += b.at(f, a).norm();
+  }
+  EXPECT_LT(resultant.norm(), 1e-14 * sum);
+  EXPECT_LT(moment.norm(), 1e-14 * sum * b.problem.reference_length);
+}
+
+TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
+  Bench b(GetParam(), "spinning_block", 4);
+  if (!b.model->has_potential()) {
+    // The declared failure: the stabilisation force does work that no energy accounts for.
+    EXPECT_EQ(scene::MethodRegistry::instance().find(GetParam().method).info().cannot.count("potential"), 1u);
+    return;
+  }
+  const Column u = b.random_displacement();
+  const Column f = b.force(u);
+  const double largest = norm(f);
+  std::mt19937_64 generator(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 8; ++trial) {
+    const Column d = b.column([&](Index) { return Vec3(uniform(generator), uniform(generator), uniform(generator)); });
+    double power = 0;
+    for (std::size_t k = 0; k < d.size(); ++k) power -= f[k] * d[k];
+    // Fourth-order difference: truncation and round-off both near 1e-10 of the force's scale.
+    const auto energy = [&](double s) {
+      Column v = u;
+      for (std::size_t k = 0; k < v.size(); ++k) v[k] += s * d[k];
+      const Energies e = b.model->energies(v, b.executor);
+      return e.internal + e.stabilisation;
+    };
+    const double s = 1e-4 * b.body.h;
+    const double slope = (8 * (energy(s) - energy(-s)) - (energy(2 * s) - energy(-2 * s))) / (12 * s);
+    EXPECT_NEAR(slope, power, 1e-9 * largest * norm(d));
+  }
+}
+
+TEST_P(EveryMethod, TangentIsTheDerivativeOfTheForce) {
+  for (const char* scene : {"spinning_block", "cooks_membrane"}) {
+    Bench b(GetParam(), scene, 4);
+    const Column u = b.random_displacement(0.02);
+    const Eigen::SparseMatrix<double> K = b.model->tangent(u);
+    ASSERT_EQ(K.rows(), b.body.n * b.body.dim);
+    if (b.model->has_potential()) {
+      EXPECT_LT(Eigen::SparseMatrix<double>(K - Eigen::SparseMatrix<double>(K.transpose())).norm(), 1e-12 * K.norm());
+    }
+    std::mt19937_64 generator(17);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const Column d = b.column([&](Index) { return Vec3(uniform(generator), uniform(generator), uniform(generator)); });
+    Eigen::VectorXd direction(K.cols());
+    const double s = 1e-5 * b.body.h;
+    Column plus = u, minus = u;
+    for (std::size_t k = 0; k < u.size(); ++k) plus[k] += s * d[k], minus[k] -= s * d[k];
+    const Column f_plus = b.force(plus), f_minus = b.force(minus);
+    Eigen::VectorXd difference(K.rows());
+    for (Index a = 0; a < b.body.n; ++a) {
+      for (int i = 0; i < b.body.dim; ++i) {
+        const std::size_t k = static_cast<std::size_t>(a) * b.body.stride + i;
+        direction[a * b.body.dim + i] = d[k];
+        difference[a * b.body.dim + i] = -(f_plus[k] - f_minus[k]) / (2 * s);
+      }
+    }
+    const Eigen::VectorXd product = K * direction;
+    EXPECT_LT((product - difference).norm(), 2e-8 * product.norm()) << scene;
+  }
+}
+
+TEST_P(EveryMethod, ThreadsDoNotChangeABit) {
+  Bench b(GetParam(), "spinning_block", 33);  // three blocks
+  const Column u = b.random_displacement();
+  const Column one = b.force(u, 1);
+  for (const int threads : {2, 3}) {
+    const Column other = b.force(u, threads);
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0) << threads << " threads";
+  }
+}
+
+TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
+  Bench b(GetParam(), "spinning_block", 5);
+  scene::Mesh mesh = b.body.mesh;
+  std::vector<Index> place(mesh.nodes.size());
+  std::iota(place.begin(), place.end(), 0);
+  std::mt19937_64 generator(23);
+  std::shuffle(place.begin(), place.end(), generator);
+  scene::Mesh shuffled = mesh;
+  for (std::size_t a = 0; a < place.size(); ++a) {
+    shuffled.nodes[place[a]] = mesh.nodes[a];
+    shuffled.node_entity[place[a]] = mesh.node_entity[a];
+  }
+  for (Index& v : shuffled.cells) v = place[v];
+  for (Index& v : shuffled.facets) v = place[v];
+  const Column u = b.random_displacement();
+  const Column f = b.force(u);
+  const double scale = norm(f);
+  Bench other(GetParam(), "spinning_block", 5);
+  const Body renumbered = make_body(b.problem, shuffled);
+  for (Index a = 0; a < b.body.n; ++a) ASSERT_EQ(renumbered.position(a), b.body.position(a));
+  const auto& method = dynamic_cast<const ParticleMethod&>(scene::MethodRegistry::instance().find(GetParam().method));
+  const scene::Settings settings(GetParam().method, method.info().parameters, GetParam().settings);
+  const auto model = method.make_model(renumbered, b.problem, settings, b.executor);
+  Column g = b.zeros();
+  model->forces(u, b.zeros(), g, b.executor);
+  for (std::size_t k = 0; k < g.size(); ++k) g[k] -= f[k];
+  EXPECT_LT(norm(g), 1e-13 * scale);
+}
+
+TEST_P(EveryMethod, InvertedParticleIsReported) {
+  Bench b(GetParam(), "spinning_block", 4);
+  const Column u = b.column([&](Index a) { return Vec3(-2 * b.body.position(a)[0], 0, 0); });  // mirrored: det F = -1
+  Column f = b.zeros();
+  try {
+    b.model->forces(u, b.zeros(), f, b.executor);
+    FAIL() << "no BadState";
+  } catch (const BadState& bad) {
+    EXPECT_EQ(bad.quantity, "det F");
+    EXPECT_EQ(bad.particle, 0);
+  }
+  Column broken = b.zeros();
+  broken[static_cast<std::size_t>(7) * b.body.stride] = std::nan("");
+  EXPECT_THROW(b.model->forces(broken, b.zeros(), f, b.executor), BadState);
+}
+
+}  // namespace
+}  // namespace concord::particle::test
