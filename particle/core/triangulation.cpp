@@ -87,38 +87,6 @@ Vec3 facet_area(int dim, const std::vector<Vec3>& nodes, const Index* v) {
   return 0.5 * (nodes[v[1]] - nodes[v[0]]).cross(nodes[v[2]] - nodes[v[0]]);
 }
 
-/// Turns the facets so that all normals point out of the body: each away from the fourth (third) node of its cell.
-void orient_outward(const scene::Mesh& mesh, const std::vector<char>& on_surface, Surface& surface) {
-  const int dim = mesh.dim, nv = dim + 1;
-  std::map<std::array<Index, 3>, Index> opposite;
-  const auto key = [dim](std::array<Index, 3> v) {
-    std::sort(v.begin(), v.begin() + dim);
-    return v;
-  };
-  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
-    const Index* v = &mesh.cells[c * nv];
-    for (int k = 0; k < nv; ++k) {
-      std::array<Index, 3> face{-1, -1, -1};
-      bool outside = true;
-      for (int i = 0, j = 0; i < nv; ++i) {
-        if (i == k) continue;
-        face[j++] = v[i];
-        outside = outside && on_surface[v[i]];
-      }
-      if (outside) opposite[key(face)] = v[k];
-    }
-  }
-  for (std::size_t f = 0; f < surface.entity.size(); ++f) {
-    Index* v = &surface.facets[f * dim];
-    std::array<Index, 3> face{-1, -1, -1};
-    std::copy(v, v + dim, face.begin());
-    const auto it = opposite.find(key(face));
-    if (it == opposite.end()) continue;
-    const Vec3 inward = mesh.nodes[it->second] - mesh.nodes[v[0]];
-    if (facet_area(dim, mesh.nodes, v).dot(inward) > 0) std::swap(v[0], v[1]);
-  }
-}
-
 /// Solid angle (3D, Van Oosterom & Strackee 1983) or angle (2D) of a facet seen from X.
 double seen_angle(int dim, const std::vector<Vec3>& nodes, const Index* v, const Vec3& X) {
   if (dim == 2) {
@@ -131,13 +99,13 @@ double seen_angle(int dim, const std::vector<Vec3>& nodes, const Index* v, const
   return 2 * std::atan2(a.dot(b.cross(c)), denominator);
 }
 
-/// Winding number of the surface around X, in absolute value: 1 inside, 0 outside.
+/// Winding number of the (outward oriented) surface around X: 1 inside, 0 outside.
 double winding_number(const scene::Mesh& mesh, const Surface& surface, const Vec3& X) {
   double angle = 0;
   for (std::size_t f = 0; f < surface.entity.size(); ++f) {
     angle += seen_angle(mesh.dim, mesh.nodes, &surface.facets[f * mesh.dim], X);
   }
-  return std::abs(angle) / (mesh.dim == 3 ? 4 * std::numbers::pi : 2 * std::numbers::pi);
+  return angle / (mesh.dim == 3 ? 4 * std::numbers::pi : 2 * std::numbers::pi);
 }
 
 /// Per node: whether it lies on the body's surface.
@@ -290,7 +258,7 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
   t.dim = dim;
   const std::vector<Index> cells = hull_cells(mesh);
   if (cells.empty()) not_reproduced(problem, "particles that all lie in one plane or line", mesh.h);
-  Surface surface = body_surface(mesh);
+  const Surface surface = body_surface(mesh);
   const std::vector<char> on_surface = surface_nodes(mesh);
   const double body = scene::mesh_volume(mesh);
   std::array<Vec3, 4> X, g;
@@ -302,7 +270,6 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
     hull += std::abs(volumes[s]);
   }
   const bool convex = std::abs(hull - body) <= 1e-10 * body;
-  if (!convex) orient_outward(mesh, on_surface, surface);
   const double flat = 1e-10 * std::pow(mesh.h, dim);
   for (std::size_t s = 0; s < volumes.size(); ++s) {
     const Index* v = &cells[s * nv];
