@@ -41,7 +41,6 @@ def main(arguments=None):
                         help="one sub-folder a study, each with a study.json")
     parser.add_argument("--out", type=Path, metavar="DIR", help="default: the studies' folder")
     parser.add_argument("--cache", type=Path, metavar="DIR", help="finished drawings; default OUT/.cache")
-    parser.add_argument("--quiet", action="store_true", help="no line when all went well")
     options = parser.parse_args(arguments)
     out = options.out or options.studies
     try:
@@ -51,8 +50,6 @@ def main(arguments=None):
         return 2
     for warning in warnings:
         print(f"report: {warning}", file=sys.stderr)
-    if not options.quiet:
-        print(out / "index.html")
     return 0
 
 

@@ -107,10 +107,10 @@ def local_orders(case, path, first_quantity):
 
 
 def _told(row, path, first_quantity):
-    value = row.get("local_order")
-    if isinstance(value, dict):
-        return number(value.get(path, value.get(path.split(".")[-1])))
-    return number(value) if path == first_quantity else None
+    orders = row.get("local_orders")
+    if isinstance(orders, dict):
+        return number(orders.get(path))
+    return number(row.get("local_order")) if path == first_quantity else None
 
 
 def _order(coarse, fine, path):

@@ -1,5 +1,7 @@
 """Draws a plot's specification (plots.py) with matplotlib. Imported only when the cache lacks it."""
 
+import math
+
 import matplotlib
 
 matplotlib.use("svg")
@@ -7,7 +9,7 @@ from matplotlib.figure import Figure  # noqa: E402  (after the choice of back en
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
 from . import draw_labels, draw_triangles, svg  # noqa: E402
-from .digits import exact, pretty, ticks  # noqa: E402
+from .digits import SUPERSCRIPTS, exact, pretty, ticks  # noqa: E402
 from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
 
 INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"))
@@ -90,12 +92,16 @@ def _log(axes, one, values, is_x, levels):
     one.set_major_locator(LogLocator(10, subs=(1, 2, 5) if narrow else (1,), numticks=12))
     one.set_minor_locator(LogLocator(10, subs=range(2, 10), numticks=12))
     one.set_minor_formatter(NullFormatter())
-    one.set_major_formatter(FuncFormatter(lambda v, _: exact(v, 2)))
+    powers = not narrow and (low < 1e-3 or high > 1e4)
+    one.set_major_formatter(FuncFormatter(lambda v, _: _decade(v) if powers else exact(v, 2)))
+
+
+def _decade(value):
+    return "10" + str(round(math.log10(value))).translate(SUPERSCRIPTS)
 
 
 def _apart(places, low, high):
     """True when labels at these places of a log axis do not touch."""
-    import math
     full = math.log(high / low) or 1
     return all(math.log(b / a) / full > 0.085 for a, b in zip(places, places[1:]))
 

@@ -4,9 +4,9 @@ import json
 import math
 import xml.etree.ElementTree as ET
 
+from .claims import bound_text, measured_text, source_text
 from .digits import DASH, pretty
 from .loading import study_verdict, verdict
-from .tables import bound_text, measured_text, source_text
 
 MARKS = {"pass": "✓ pass", "fail": "✗ FAIL", "open": "○ not judged"}
 
@@ -60,9 +60,8 @@ def summary(studies, warnings):
 def _claims(pairs):
     out = ["| claim | source’s value | ours | bound | verdict |", "|---|---:|---:|---:|---|"]
     for _, claim in pairs:
-        ours = measured_text(claim.get("measured"), claim.get("unit"))
         out.append("| " + " | ".join(map(_cell, (
-            claim["statement"], source_text(claim), ours, bound_text(claim),
+            claim["statement"], source_text(claim), measured_text(claim), bound_text(claim),
             MARKS[verdict(claim)]))) + " |")
     return out
 
@@ -88,7 +87,7 @@ def junit(studies):
                               failures=str(counts["fail"]), errors="0", skipped=str(counts["open"]))
         for claim in study.claims:
             case = ET.SubElement(suite, "testcase", classname=study.name, name=claim["id"], time="0")
-            ours, bound = measured_text(claim.get("measured"), claim.get("unit")), bound_text(claim)
+            ours, bound = measured_text(claim), bound_text(claim)
             told = f"{claim['statement']}: measured {ours}, bound {bound}"
             if verdict(claim) == "fail":
                 ET.SubElement(case, "failure", message=told).text = claim.get("note") or claim.get("reason") or told

@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import outputs, pictures, plots, tables
+from . import claims, outputs, pictures, plots, tables
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
 from .palette import css_variables, method_name, swatch
@@ -21,9 +21,9 @@ def slug(name):
 
 def _claim_view(claim):
     return {"id": claim["id"], "statement": claim["statement"], "source": claim.get("source") or "",
-            "source_value": tables.source_text(claim), "note": tables.typeset(claim.get("note") or claim.get("reason") or ""),
-            "measured": tables.measured_text(claim.get("measured"), claim.get("unit")),
-            "bound": tables.bound_text(claim), "verdict": verdict(claim)}
+            "source_value": claims.source_text(claim), "note": claims.typeset(claim.get("note") or claim.get("reason") or ""),
+            "measured": claims.measured_text(claim),
+            "bound": claims.bound_text(claim), "verdict": verdict(claim)}
 
 
 def _plots(study, cases, store, warnings):
@@ -88,8 +88,10 @@ def _study_view(study, cases, jobs, store, warnings):
 
 
 def _failed_runs(study, cases):
-    """A remark a run that did not reach its end."""
+    """Remarks: a study that was interrupted, a run that did not reach its end."""
     out = []
+    if study.data.get("interrupted"):
+        out.append(f"{study.name}: the study was interrupted; this is what it had by then")
     for case in cases:
         for level in case.levels:
             for row in level.rows:

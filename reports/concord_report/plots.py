@@ -99,7 +99,7 @@ def setting_of(row, key):
     """(number, unit text) of a setting: a field of the row, of its settings, or a word of its
     variant ("support 3, psi 0.1"); None when the row does not tell."""
     short = key.split(".")[-1]
-    places = [row] + [row[k] for k in ("set", "scene_set", "settings", "parameters")
+    places = [row] + [row[k] for k in ("settings", "scene_settings", "set", "scene_set", "parameters")
                       if isinstance(row.get(k), dict)]
     for place in places:
         for name in (key, short):

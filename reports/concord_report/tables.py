@@ -1,9 +1,7 @@
 """The tables of a study, as plain data for the template: captions, columns, cells that line up."""
 
-import re
-
 from .cases import fit_of, local_orders
-from .digits import DASH, SUPERSCRIPTS, between, column, exact_column, pretty, takes_powers
+from .digits import DASH, between, column, exact_column, takes_powers
 from .loading import dig, number
 from .palette import swatch
 from .quantities import axis, name_and_unit
@@ -152,10 +150,14 @@ def references_table(study, label):
          number_column("value", [e.get("value") for e in entries], 4),
          number_column("observed order", [e.get("order") for e in entries]),
          number_column("GCI, relative", [e.get("gci") for e in entries], 2),
-         number_column("safety factor", [e.get("safety") for e in entries],
-                       texts=exact_column([e.get("safety") for e in entries])),
-         text_column("in words", [e.get("text") or "" for e in entries])],
+         number_column("safety factor", [_safety(e) for e in entries],
+                       texts=exact_column([_safety(e) for e in entries])),
+         text_column("in words", [e.get("statement") or e.get("text") or "" for e in entries])],
         "GCI: grid convergence index from three levels, with the safety factor of Roache’s rule.")
+
+
+def _safety(entry):
+    return entry.get("safety_factor", entry.get("safety"))
 
 
 def runs_table(cases):
@@ -195,41 +197,3 @@ def machine_facts(rows):
         if values:
             out.append((label, values))
     return out
-
-
-def measured_text(value, unit=""):
-    """A claim's number with its unit, a dash when there is none."""
-    out = pretty(value, 3)
-    return out if out == DASH or unit in ("", "1", None) else f"{out} {unit}"
-
-
-def bound_text(claim):
-    """"≥ 1.8", "1.8 to 2.6" or the study's own words."""
-    bound, unit = claim.get("bound"), claim.get("unit") or ""
-    if isinstance(bound, list) and len(bound) == 2:
-        bound = dict(zip(("min", "max"), bound))
-    if isinstance(bound, dict):
-        low, high = number(bound.get("min")), number(bound.get("max"))
-        if low is not None and high is not None:
-            return f"{measured_text(low)} to {measured_text(high, unit)}"
-        if low is not None:
-            return f"≥ {measured_text(low, unit)}"
-        return f"≤ {measured_text(high, unit)}" if high is not None else DASH
-    if number(bound) is not None:
-        return measured_text(bound, unit)
-    return typeset(str(bound)) if bound else DASH
-
-
-def source_text(claim):
-    """The source's value in the source's own words."""
-    value = claim.get("source_value")
-    return measured_text(value) if number(value) is not None else typeset(str(value or DASH))
-
-
-def typeset(words):
-    """">= 1e-10 N" -> "≥ 10⁻¹⁰ N": as the numbers beside it are set."""
-    words = words.replace(">=", "≥").replace("<=", "≤")
-    def power(match):
-        exponent = str(int(match[2])).translate(SUPERSCRIPTS)
-        return f"10{exponent}" if match[1] == "1" else f"{match[1]}×10{exponent}"
-    return re.sub(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?\d+)\b", power, words)

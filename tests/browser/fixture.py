@@ -198,9 +198,9 @@ def membrane(folder):
                      for v, o in (("Q1", 1.2), ("Q2", 2.1))],
             "references": [
                 {"method": "fem", "variant": "Q2", "quantity": "quantities.tip_y_mm", "value": 14.735,
-                 "order": 2.06, "gci": 4.1e-4, "safety": 1.25, "text": "within 10 % of the formal order"},
+                 "order": 2.06, "gci": 4.1e-4, "safety_factor": 1.25, "statement": "within 10 % of the formal order"},
                 {"method": "fem", "variant": "Q1", "quantity": "quantities.tip_y_mm", "value": 14.42,
-                 "order": None, "gci": None, "safety": None, "text": "not asymptotic"}],
+                 "asymptotic": False, "statement": "not asymptotic"}],
             "claims": [claim("tip", "Deflection of the tip", "14.74 mm", 14.735, ">= 14.7 and <= 14.8 mm",
                              unit="mm")],
             "plots": [{"kind": "convergence", "quantity": "errors.tip_difference"},

@@ -1,0 +1,173 @@
+// Opens the report in Chromium and checks what a reader relies on. Usage: check_page.mjs INDEX.html
+// Exit status 0 when every check holds; otherwise 1, with a line for each that does not.
+
+import assert from 'node:assert/strict';
+import { readFileSync, statSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { pathToFileURL } from 'node:url';
+
+// Packages lie beside this file or where NODE_MODULES_HOME says (the build folder).
+const home = process.env.NODE_MODULES_HOME ?? new URL('.', import.meta.url).pathname;
+const require = createRequire(`${home}/package.json`);
+const { chromium } = require('playwright-core');
+const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+
+const file = process.argv[2];
+const url = pathToFileURL(file).href;
+const MOST_BYTES = 5e6;
+
+/** A page at the report, with everything that it logs or asks for. */
+async function opened(browser, options = {}) {
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  const seen = { errors: [], requests: [] };
+  page.on('console', (message) => {
+    if (['error', 'warning'].includes(message.type())) seen.errors.push(message.text());
+  });
+  page.on('pageerror', (error) => seen.errors.push(String(error)));
+  page.on('request', (request) => {
+    if (request.url() !== url && !request.url().startsWith('data:')) seen.requests.push(request.url());
+  });
+  await page.goto(url, { waitUntil: 'load' });
+  return { page, seen, close: () => context.close() };
+}
+
+/** Elements that reach beyond the window and do not lie in a box that scrolls. */
+const sticking = () => {
+  const width = document.documentElement.clientWidth;
+  return [...document.querySelectorAll('main *')]
+    .filter((e) => e.getBoundingClientRect().right > width + 1 && !e.closest('.scroll, svg, .unseen'))
+    .map((e) => `${e.tagName}.${e.className}`);
+};
+
+const checks = {
+  async 'is one file below 5 MB, says nothing to the console and asks for nothing'(browser) {
+    assert.ok(statSync(file).size < MOST_BYTES, `${statSync(file).size} bytes`);
+    const { page, seen, close } = await opened(browser);
+    await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));
+    await page.waitForTimeout(300);
+    assert.deepEqual(seen, { errors: [], requests: [] });
+    const broken = await page.$$eval('img', (all) => all.filter((i) => !i.complete || !i.naturalWidth).length);
+    assert.equal(broken, 0, 'pictures that do not load');
+    await close();
+  },
+
+  async 'does not overflow sideways at 360 pixels'(browser) {
+    const { page, close } = await opened(browser, { viewport: { width: 360, height: 740 } });
+    await page.$$eval('details', (all) => all.forEach((d) => { d.open = true; }));
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= 360, `${wide} pixels wide; beyond: ${await page.evaluate(sticking)}`);
+    assert.deepEqual(await page.evaluate(sticking), []);
+    await close();
+  },
+
+  async 'prints: white paper, no contents, nothing cut off'(browser) {
+    const { page, close } = await opened(browser, { viewport: { width: 688, height: 1000 }, colorScheme: 'dark' });
+    await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+    const look = await page.evaluate(() => ({
+      paper: getComputedStyle(document.body).backgroundColor,
+      contents: getComputedStyle(document.querySelector('nav')).display,
+      cut: [...document.querySelectorAll('table, svg.chart, img')]
+        .filter((e) => e.offsetParent !== null || e.tagName === 'svg')
+        .filter((e) => e.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
+        .map((e) => e.caption?.textContent ?? e.getAttribute('aria-label') ?? e.tagName),
+    }));
+    assert.deepEqual(look, { paper: 'rgb(255, 255, 255)', contents: 'none', cut: [] });
+    const pdf = await page.pdf({ preferCSSPageSize: true });
+    assert.equal(pdf.subarray(0, 5).toString(), '%PDF-');
+    await close();
+  },
+
+  async 'has no serious accessibility violation, light or dark'(browser) {
+    for (const colorScheme of ['light', 'dark']) {
+      const { page, close } = await opened(browser, { colorScheme });
+      await page.$$eval('details', (all) => all.forEach((d) => { d.open = true; }));
+      await page.evaluate(axe);
+      const { violations } = await page.evaluate(() => window.axe.run(document));
+      const serious = violations.filter((v) => ['serious', 'critical'].includes(v.impact));
+      const told = serious.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((n) => n.html.slice(0, 120)).join(' | ')}`);
+      assert.deepEqual(told, [], colorScheme);
+      await close();
+    }
+  },
+
+  async 'has a label on every drawing, unique ids, headings in order'(browser) {
+    const { page, close } = await opened(browser);
+    const found = await page.evaluate(() => {
+      const bare = [...document.querySelectorAll('svg')].filter((s) => s.getAttribute('aria-hidden') !== 'true' &&
+        !(s.getAttribute('role') === 'img' && (s.getAttribute('aria-label') ?? '').length > 10));
+      const ids = [...document.querySelectorAll('[id]')].map((e) => e.id);
+      const dangling = [...document.querySelectorAll('svg use')].map((u) => u.getAttribute('href').slice(1))
+        .filter((id) => !ids.includes(id));
+      const levels = [...document.querySelectorAll('h1, h2, h3, h4')].map((h) => +h.tagName[1]);
+      return {
+        bare: bare.length, twice: ids.filter((id, i) => ids.indexOf(id) !== i), dangling,
+        jumps: levels.filter((l, i) => i > 0 && l > levels[i - 1] + 1).length,
+        noCaption: [...document.querySelectorAll('table')].filter((t) => !t.caption).length,
+        charts: document.querySelectorAll('svg.chart').length > 0,
+        deadLinks: [...document.querySelectorAll('a[href^="#"]')].filter((a) => !document.getElementById(a.hash.slice(1))).length,
+      };
+    });
+    assert.deepEqual(found, { bare: 0, twice: [], dangling: [], jumps: 0, noCaption: 0, charts: true, deadLinks: 0 });
+    await close();
+  },
+
+  async 'sorts a table both ways and keeps missing values last'(browser) {
+    const { page, close } = await opened(browser);
+    const table = page.locator('table.sortable', { hasText: 'local order' }).first();
+    const head = table.locator('thead th', { hasText: 'local order' });
+    const column = await head.evaluate((th) => [...th.parentNode.children].indexOf(th));
+    const values = () => table.evaluate((t, k) => [...t.tBodies[0].rows].map((r) => r.cells[k].dataset.v ?? null), column);
+    const before = await values();
+    assert.ok(before.includes(null) && before.some((v) => v !== null), 'the fixture has both kinds');
+    for (const [sign, word] of [[1, 'ascending'], [-1, 'descending']]) {
+      await head.locator('button').click();
+      assert.equal(await head.getAttribute('aria-sort'), word);
+      const after = await values();
+      const known = after.filter((v) => v !== null).map(Number);
+      assert.deepEqual(after.slice(known.length).filter((v) => v !== null), [], 'missing values last');
+      assert.deepEqual(known, [...known].sort((a, b) => sign * (a - b)), word);
+      assert.equal(after.length, before.length);
+    }
+    await close();
+  },
+
+  async 'lights up a curve from the key, by mouse and by keyboard'(browser) {
+    const { page, close } = await opened(browser);
+    const entry = page.locator('.key li').first();
+    const faded = () => page.evaluate(() => document.querySelectorAll('.charts.picking .curve:not(.on)').length);
+    assert.equal(await faded(), 0);
+    await entry.hover();
+    assert.ok(await faded() > 0);
+    await page.mouse.move(0, 0);
+    await entry.focus();
+    assert.ok(await faded() > 0);
+    await close();
+  },
+
+  async 'is whole without JavaScript'(browser) {
+    const { page, close } = await opened(browser, { javaScriptEnabled: false });
+    assert.ok(await page.locator('#verdicts table tbody tr').count() > 0);
+    assert.ok(await page.locator('svg.chart').first().isVisible());
+    assert.equal(await page.locator('th button').count(), 0);
+    await close();
+  },
+};
+
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-gpu', '--disable-background-networking', '--disable-sync',
+    '--disable-component-update', '--no-first-run', '--host-resolver-rules=MAP * ~NOTFOUND'],
+});
+let failed = 0;
+for (const [name, check] of Object.entries(checks)) {
+  try {
+    await check(browser);
+    console.log(`ok    ${name}`);
+  } catch (error) {
+    failed += 1;
+    console.log(`FAIL  ${name}\n      ${String(error.message).replaceAll('\n', '\n      ')}`);
+  }
+}
+await browser.close();
+process.exitCode = failed ? 1 : 0;
