@@ -13,7 +13,6 @@ from .digits import SUPERSCRIPTS, exact, pretty, ticks  # noqa: E402
 from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
 
 INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"))
-DIRECT = 9  # at most so many curves are labelled at their ends; the page's key names all
 SIZE = 13
 HEIGHT = 380
 LEFT, BOTTOM, TOP = 58, 50, 12
@@ -31,7 +30,7 @@ matplotlib.rcParams.update({
 def draw(spec):
     """The specification as an <svg> element."""
     curves = spec["curves"]
-    labelled = len(curves) <= DIRECT or any(c["case"] < 0 for c in curves)
+    labelled = spec["labelled"]
     right = 22 + max(_width(_end_label(c)) for c in curves) if labelled else 14
     width = LEFT + AREA + right if labelled else PLAIN
     figure = Figure(figsize=(width / 72, HEIGHT / 72), dpi=72)

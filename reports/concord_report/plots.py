@@ -12,6 +12,7 @@ from .palette import look
 from .quantities import axis, name_and_unit
 
 KINDS = {}
+DIRECT = 9  # at most so many curves are labelled at their ends; the page's key names all
 MODULES = ("draw", "draw_labels", "draw_triangles", "svg", "palette", "digits")
 
 
@@ -56,7 +57,7 @@ def convergence(study, cases, plot):
     wanted = number(plot.get("slope"))
     return {"scales": ["log", "log"], "xlabel": "mean spacing h [m]", "ylabel": axis(plot["quantity"]),
             "curves": curves, "title": plot.get("title") or f"{_capital(name)} against spacing",
-            "note": "Fitted orders in brackets." if orders else "",
+            "note": "Fitted orders in brackets." if orders and len(curves) <= DIRECT else "",
             "triangles": [wanted] if wanted else _nominal(orders),
             "alt": f"Log-log plot of {name} against mean spacing h."
                    + (f" Fitted orders: {told}." if told else "")}
@@ -196,7 +197,8 @@ def plot_specs(study, cases):
 
 def drawn(spec, ident, store):
     """The SVG of a specification, from the cache where it is there."""
-    spec = {**spec, "ident": ident}
+    labelled = len(spec["curves"]) <= DIRECT or any(c["case"] < 0 for c in spec["curves"])
+    spec = {**spec, "ident": ident, "labelled": labelled}
     looks = [look(c["method"]) for c in spec["curves"]]
     key = cache.digest(spec, looks, cache.source_digest(*MODULES))
     found = store.get(key, ".svg")

@@ -145,7 +145,7 @@ class Plots(unittest.TestCase):
 
     def test_drawing_is_stable_labelled_and_its_own(self):
         from concord_report import draw
-        spec = {**self.spec("convergence"), "ident": "here"}
+        spec = {**self.spec("convergence"), "ident": "here", "labelled": True}
         once, again = draw.draw(spec), draw.draw(spec)
         self.assertEqual(once, again)
         drawing = ET.fromstring(once)
