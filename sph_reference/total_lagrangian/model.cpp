@@ -1,14 +1,12 @@
 #include "sph_reference/total_lagrangian/model.hpp"
 
-#include "sph_reference/total_lagrangian/rows.hpp"
-
 #include <algorithm>
 
 namespace concord::sph {
 namespace {
 
 /// Particles in a range dealt to a thread: whole groups of stress_width, several ranges a thread from a few thousand particles on.
-constexpr std::size_t range = 64 * stress_width;
+constexpr std::size_t range = 64 * particle::stress_width;
 
 template <class Loop>
 void for_ranges(std::size_t n, const Executor& executor, const Loop& loop) {
@@ -16,21 +14,9 @@ void for_ranges(std::size_t n, const Executor& executor, const Loop& loop) {
                     [&](std::size_t k) { loop(k, k * range, std::min(n, (k + 1) * range)); });
 }
 
-template <int Dim, bool Potential>
-Index stresses_by_law(const particle::KernelMaterial& material, const Neighbours& rows, std::size_t first,
-                      std::size_t last, const State& s) {
-  return particle::with_law(material.law, [&](auto law) {
-    return stresses<Dim, decltype(law)::value, Potential>(rows, first, last, material.lame, s);
-  });
-}
-
-template <int Dim, class Penalty>
-void forces_by_viscosity(const Neighbours& rows, const Viscosity& eta, bool viscous, const State& s, std::size_t n,
-                         const Executor& executor) {
-  for_ranges(n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
-    if (viscous) forces<Dim, Penalty, true>(rows, first, last, eta, s);
-    else forces<Dim, Penalty, false>(rows, first, last, eta, s);
-  });
+Viscosity viscosity(const TlsphOptions& options, const scene::Material& material, double h) {
+  return {options.alpha * material.rho0 * material.longitudinal_wave_speed() * h, options.beta * material.rho0 * h * h,
+          0.01 * h * h};
 }
 
 }  // namespace
@@ -42,48 +28,36 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
       m_kernel(options.kernel, body.dim, options.support * body.h),
       m_law(problem.material, problem.dimension),
       m_material(particle::kernel_material(problem)),
-      m_wave_speed(problem.material.longitudinal_wave_speed()),
       m_rho0(problem.material.rho0),
+      m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
       m_rows(find_neighbours(body, m_kernel, options.psi * problem.material.E, executor)),
+      m_loops(choose_loops(body.dim, m_material.law, penalty(), viscous())),
       m_records(static_cast<std::size_t>(body.n) * 2 * body.dim * body.stride, 0.0),
       m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
 
-void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
-                                const Executor& executor) {
-  if (m_body.dim == 3) forces_of<3>(u, v, f, executor);
-  else forces_of<2>(u, v, f, executor);
+State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v, std::span<double> f) {
+  return {m_body.X.data(), u.data(), v.data(), m_body.V.data(), m_records.data(), f.data()};
 }
 
-template <int Dim>
-void TotalLagrangianSph::forces_of(std::span<const double> u, std::span<const double> v, std::span<double> f,
-                                   const Executor& executor) {
-  const std::size_t n = m_body.n;
-  const State s{m_body.X.data(), u.data(), v.data(), m_body.V.data(), m_records.data(), f.data()};
-  const bool potential = penalised() && m_options.penalty == PenaltyForm::potential;
-  if (potential) update_gradients(u, executor);
-  for_ranges(n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
-    m_bad[k] = potential ? stresses_by_law<Dim, true>(m_material, m_rows, first, last, s)
-                         : stresses_by_law<Dim, false>(m_material, m_rows, first, last, s);
+void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
+                                const Executor& executor) {
+  const State s = state(u, v, f);
+  if (penalty() == PenaltyForm::potential) update_gradients(u, executor);
+  for_ranges(m_body.n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
+    m_bad[k] = m_loops.stresses(m_rows, first, last, m_material.lame, s);
   });
   for (const Index a : m_bad) {
     if (a >= 0) throw particle::BadState{"det F", a};
   }
-  const double h = m_kernel.smoothing_length();
-  const Viscosity eta{m_options.alpha * m_rho0 * m_wave_speed * h, m_options.beta * m_rho0 * h * h, 0.01 * h * h};
-  if (potential) {
-    forces_by_viscosity<Dim, AfterPotential>(m_rows, eta, viscous(), s, n, executor);
-  } else if (penalised()) {
-    forces_by_viscosity<Dim, Ganzenmueller>(m_rows, eta, viscous(), s, n, executor);
-  } else {
-    forces_by_viscosity<Dim, WithoutPenalty>(m_rows, eta, viscous(), s, n, executor);
-  }
+  for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
+    m_loops.forces(m_rows, first, last, m_viscosity, s);
+  });
 }
 
 void TotalLagrangianSph::update_gradients(std::span<const double> u, const Executor& executor) {
-  const State s{m_body.X.data(), u.data(), nullptr, m_body.V.data(), m_records.data(), nullptr};
+  const State s = state(u, {}, {});
   for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
-    if (m_body.dim == 3) sph::gradients<3>(m_rows, first, last, s);
-    else sph::gradients<2>(m_rows, first, last, s);
+    m_loops.gradients(m_rows, first, last, s);
   });
 }
 
@@ -122,7 +96,7 @@ particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const
     }
     return sum;
   });
-  if (penalised() && m_options.penalty == PenaltyForm::potential) e.stabilisation = penalty_energy(u, executor);
+  if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(u, executor);
   return e;
 }
 
@@ -147,7 +121,7 @@ double TotalLagrangianSph::viscous_damping_ratio(double omega_max) const {
     for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) sum += m_rows.weight[k];
     largest = std::max(largest, sum);
   }
-  return m_options.alpha * m_wave_speed * m_kernel.smoothing_length() * largest / omega_max;
+  return m_viscosity.linear / m_rho0 * largest / omega_max;  // (TLS.13)
 }
 
 }  // namespace concord::sph

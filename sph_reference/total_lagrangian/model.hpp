@@ -5,14 +5,9 @@
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
 #include "scene/material.hpp"
-#include "sph_reference/total_lagrangian/neighbours.hpp"
+#include "sph_reference/total_lagrangian/loops.hpp"
 
 namespace concord::sph {
-
-enum class PenaltyForm {
-  ganzenmueller,  ///< (28) of the Continuum Bond Method paper: along the current bond, no potential (TLS.10)
-  potential       ///< 1/2 k_ab |l_ab|^2 a pair, with all its derivatives (TLS.11)
-};
 
 struct TlsphOptions {
   KernelShape kernel = KernelShape::cubic_spline;
@@ -32,7 +27,7 @@ class TotalLagrangianSph final : public particle::ForceModel {
   particle::Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
-  bool has_potential() const override { return !penalised() || m_options.penalty == PenaltyForm::potential; }
+  bool has_potential() const override { return penalty() != PenaltyForm::ganzenmueller; }
   bool viscous() const override { return m_options.alpha > 0 || m_options.beta > 0; }
   /// Bound on the damping ratio at omega_max by the linear term at alpha (TLS.13).
   double viscous_damping_ratio(double omega_max) const override;
@@ -42,21 +37,22 @@ class TotalLagrangianSph final : public particle::ForceModel {
   const Kernel& kernel() const { return m_kernel; }
 
  private:
-  bool penalised() const { return m_options.psi > 0; }
+  PenaltyForm penalty() const { return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none; }
   Mat3 plane_gradient(Index a) const;
   void update_gradients(std::span<const double> u, const Executor& executor);
   Vec3 local_displacement(std::span<const double> u, Index a, Index b) const;
   double penalty_energy(std::span<const double> u, const Executor& executor) const;
-  template <int Dim>
-  void forces_of(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor);
+  State state(std::span<const double> u, std::span<const double> v, std::span<double> f);
 
   TlsphOptions m_options;
   Kernel m_kernel;
   scene::ElasticLaw m_law;
   particle::KernelMaterial m_material;
-  double m_wave_speed, m_rho0;
+  double m_rho0;
+  Viscosity m_viscosity;
   Neighbours m_rows;
-  Column m_records;          ///< [T | H] columns, see rows.hpp
+  Loops m_loops;
+  Column m_records;          ///< see State
   std::vector<Index> m_bad;  ///< first bad particle of each range
 };
 

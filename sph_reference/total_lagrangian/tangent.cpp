@@ -49,15 +49,16 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
   for (Index a = 0; a < m_body.n; ++a) moduli[a] = m_law.tangent(plane_gradient(a));
 
   std::vector<particle::PairTangent> pairs;
-  if (penalised()) pairs.reserve(m_rows.count() / 2);
-  for (Index a = 0; penalised() && a < m_body.n; ++a) {
+  const bool penalised = penalty() != PenaltyForm::none;
+  if (penalised) pairs.reserve(m_rows.count() / 2);
+  for (Index a = 0; penalised && a < m_body.n; ++a) {
     for (std::size_t i = m_rows.begin[a]; i < m_rows.begin[a + 1]; ++i) {
       const Index b = m_rows.other[i];
       if (b < a) continue;
       const double k = m_body.V[a] * m_rows.stiffness[i];
       const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(u, a, b);
       const Vec3 x_ab = l + X_ab + 0.5 * (plane_gradient(a) + plane_gradient(b)) * X_ab;
-      particle::PairTangent pair = m_options.penalty == PenaltyForm::potential ? potential_pair(k)
+      particle::PairTangent pair = penalty() == PenaltyForm::potential ? potential_pair(k)
                                                                                : ganzenmueller_pair(k, l, x_ab);
       pair.a = a, pair.b = b, pair.X_ab = X_ab;
       pairs.push_back(pair);
