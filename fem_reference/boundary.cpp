@@ -1,6 +1,7 @@
 #include "fem_reference/boundary.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -3,6 +3,8 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <map>

@@ -9,7 +9,7 @@ scene::ParameterInfo word(std::string key, std::string value, std::vector<std::s
   for (const std::string& c : choices) range += (range.empty() ? "" : " | ") + c;
   scene::ParameterInfo info;
   info.key = std::move(key);
-  info.unit = "1";
+  info.unit = std::string(1, '1');
   info.default_value = std::move(value);
   info.range = std::move(range);
   info.meaning = std::move(meaning);

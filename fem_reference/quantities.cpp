@@ -4,6 +4,8 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
