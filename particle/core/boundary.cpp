@@ -1,5 +1,7 @@
 #include "particle/core/boundary.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -66,7 +66,7 @@ std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const
       std::array<double, 4> trial{};
       weights(m_inside[k], X, trial);
       const double least = *std::min_element(trial.begin(), trial.begin() + m_dim + 1);
-      if (least > best_least) best_least = least, best = m_inside[k], w = trial;
+      if (std::isfinite(trial[0] + trial[1] + trial[2] + trial[3]) && least > best_least) best_least = least, best = m_inside[k], w = trial;
     }
   };
   // The cell at X holds the simplex, unless X lies outside: then look further out, ring by ring.

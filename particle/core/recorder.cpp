@@ -1,5 +1,7 @@
 #include "particle/core/recorder.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 

@@ -2,6 +2,8 @@
 
 #include "scene/interrupt.hpp"
 
+#include <Eigen/Geometry>
+
 #include <Eigen/CholmodSupport>
 #include <Eigen/Eigenvalues>
 #include <Eigen/UmfPackSupport>

@@ -1,5 +1,7 @@
 #include "particle/core/triangulation.hpp"
 
+#include <Eigen/Geometry>
+
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -108,11 +110,26 @@ double winding_number(const scene::Mesh& mesh, const Surface& surface, const Vec
   return angle / (mesh.dim == 3 ? 4 * std::numbers::pi : 2 * std::numbers::pi);
 }
 
-/// Per node: whether it lies on the body's surface.
-std::vector<char> surface_nodes(const scene::Mesh& mesh) {
-  std::vector<char> on(mesh.nodes.size(), 0);
-  for (const Index v : mesh.facets) on[v] = 1;
-  return on;
+/// Per node: the faces of the body (entities) that it lies on, sorted; none inside.
+using NodeFaces = std::vector<std::vector<Index>>;
+
+NodeFaces node_faces(const scene::Mesh& mesh, const Surface& surface) {
+  NodeFaces of_node(mesh.nodes.size());
+  for (std::size_t f = 0; f < surface.entity.size(); ++f) {
+    for (int k = 0; k < mesh.dim; ++k) of_node[surface.facets[f * mesh.dim + k]].push_back(surface.entity[f]);
+  }
+  for (auto& list : of_node) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return of_node;
+}
+
+/// Whether some face of the body holds all the vertices.
+bool share_a_face(const NodeFaces& faces, const Index* v, int count) {
+  return std::any_of(faces[v[0]].begin(), faces[v[0]].end(), [&](Index face) {
+    return std::all_of(v + 1, v + count, [&](Index w) { return std::binary_search(faces[w].begin(), faces[w].end(), face); });
+  });
 }
 
 /// Facets of the kept simplices that belong to one simplex only, outward oriented.
@@ -127,7 +144,7 @@ std::vector<Index> free_facets(const Triangulation& t) {
   for (std::size_t s = 0; s < t.size(); ++s) {
     const Index* v = &t.simplices[s * nv];
     for (int k = 0; k < nv; ++k) {
-      Entry e{{-1, -1, -1}, {-1, -1, -1}};
+      Entry e{};
       if (t.dim == 3) {  // outward orientation of the face opposite to vertex k of a positive tetrahedron
         constexpr int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
         e.oriented = {v[face[k][0]], v[face[k][1]], v[face[k][2]]};
@@ -152,15 +169,8 @@ std::vector<Index> free_facets(const Triangulation& t) {
 
 /// The gmsh entity each boundary facet lies on: the one whose facets contain all its vertices; where several do (at
 /// corners), the one whose nearest facet has the most similar normal.
-std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mesh, const Surface& surface) {
-  std::vector<std::vector<Index>> of_node(mesh.nodes.size());
-  for (std::size_t f = 0; f < surface.entity.size(); ++f) {
-    for (int k = 0; k < mesh.dim; ++k) of_node[surface.facets[f * mesh.dim + k]].push_back(surface.entity[f]);
-  }
-  for (auto& list : of_node) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
+std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mesh, const Surface& surface,
+                                  const NodeFaces& of_node) {
   // Normal of an entity near a node: sum over its facets at that node.
   std::map<std::pair<Index, Index>, Vec3> normal;
   for (std::size_t f = 0; f < surface.entity.size(); ++f) {
@@ -233,23 +243,29 @@ void check_against_body(const Triangulation& t, const scene::Mesh& mesh, const S
 
 }  // namespace
 
-double shape_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> g) {
+double volume_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> g) {
+  double volume = 0;
   if (dim == 3) {
     const Vec3 a = X[1] - X[0], b = X[2] - X[0], c = X[3] - X[0];
-    const Vec3 bc = b.cross(c), ca = c.cross(a), ab = a.cross(b);
-    const double det = a.dot(bc);
-    g[1] = bc / det;
-    g[2] = ca / det;
-    g[3] = ab / det;
+    g[1] = b.cross(c) / 6;
+    g[2] = c.cross(a) / 6;
+    g[3] = a.cross(b) / 6;
     g[0] = -(g[1] + g[2] + g[3]);
-    return det / 6;
+    volume = a.dot(g[1]);
+  } else {
+    const Vec3 a = X[1] - X[0], b = X[2] - X[0];
+    g[1] = Vec3(b[1], -b[0], 0) / 2;
+    g[2] = Vec3(-a[1], a[0], 0) / 2;
+    g[0] = -(g[1] + g[2]);
+    volume = (a[0] * b[1] - a[1] * b[0]) / 2;
   }
-  const Vec3 a = X[1] - X[0], b = X[2] - X[0];
-  const double det = a[0] * b[1] - a[1] * b[0];
-  g[1] = Vec3(b[1], -b[0], 0) / det;
-  g[2] = Vec3(-a[1], a[0], 0) / det;
-  g[0] = -(g[1] + g[2]);
-  return det / 2;
+  return volume;
+}
+
+double shape_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> g) {
+  const double volume = volume_gradients(dim, X, g);
+  for (int k = 0; k <= dim; ++k) g[k] /= volume;
+  return volume;
 }
 
 Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem) {
@@ -259,14 +275,14 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
   const std::vector<Index> cells = hull_cells(mesh);
   if (cells.empty()) not_reproduced(problem, "particles that all lie in one plane or line", mesh.h);
   const Surface surface = body_surface(mesh);
-  const std::vector<char> on_surface = surface_nodes(mesh);
+  const NodeFaces faces = node_faces(mesh, surface);
   const double body = scene::mesh_volume(mesh);
   std::array<Vec3, 4> X, g;
   double hull = 0;
   std::vector<double> volumes(cells.size() / nv);
   for (std::size_t s = 0; s < volumes.size(); ++s) {
     for (int k = 0; k < nv; ++k) X[k] = mesh.nodes[cells[s * nv + k]];
-    volumes[s] = shape_gradients(dim, X, g);
+    volumes[s] = volume_gradients(dim, X, g);
     hull += std::abs(volumes[s]);
   }
   const bool convex = std::abs(hull - body) <= 1e-10 * body;
@@ -276,17 +292,19 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
     bool all_on_surface = true;
     Vec3 centroid = Vec3::Zero();
     for (int k = 0; k < nv; ++k) {
-      all_on_surface = all_on_surface && on_surface[v[k]];
+      all_on_surface = all_on_surface && !faces[v[k]].empty();
       centroid += mesh.nodes[v[k]] / nv;
     }
-    if (all_on_surface && std::abs(volumes[s]) < flat) continue;
+    // Flat cells along a face come from round-off in its points. Flat cells inside (four points of a lattice square) stay:
+    // their neighbours lean on them.
+    if (all_on_surface && std::abs(volumes[s]) < flat && share_a_face(faces, v, nv)) continue;
     if (all_on_surface && !convex && winding_number(mesh, surface, centroid) < 0.5) continue;
     t.simplices.insert(t.simplices.end(), v, v + nv);
     if (volumes[s] < 0) std::swap(t.simplices[t.simplices.size() - 1], t.simplices[t.simplices.size() - 2]);
     t.volume.push_back(std::abs(volumes[s]));
   }
   t.boundary = free_facets(t);
-  t.boundary_entity = facet_entities(t, mesh, surface);
+  t.boundary_entity = facet_entities(t, mesh, surface, faces);
   t.on_boundary.assign(mesh.nodes.size(), 0);
   for (const Index v : t.boundary) t.on_boundary[v] = 1;
   check_against_body(t, mesh, surface, problem);

@@ -28,8 +28,12 @@ struct Triangulation {
 /// by what a flat facet cuts off, h^2/4 of the local turning a facet.
 Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem);
 
-/// Gradients of the linear shape functions of one simplex and its volume. X: dim+1 vertices; g: dim+1 gradients [1/m].
-/// Returns the signed volume [m^dim].
+/// |t| grad w_k of the linear shape functions of one simplex, and its signed volume |t| [m^dim]. X: dim+1 vertices; result: dim+1
+/// vectors [m^(dim-1)], area vectors of the opposite faces over dim. Without division: flat simplices (lattices have them) are
+/// as good as any.
+double volume_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> volume_times_g);
+
+/// Gradients grad w_k themselves [1/m]; not finite for a flat simplex. Returns the signed volume.
 double shape_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> g);
 
 }  // namespace concord::particle

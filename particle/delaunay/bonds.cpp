@@ -30,7 +30,9 @@ std::vector<Bond> gradient_vectors(const Body& body) {
   for (std::size_t s = 0; s < t.size(); ++s) {
     const Index* v = &t.simplices[s * nv];
     for (int i = 0; i < nv; ++i) X[i] = body.position(v[i]);
-    const double scale = shape_gradients(t.dim, X, g) * body.thickness / nv;
+    // B_ab is the integral over a positively oriented simplex; a flat one may carry either sign and the same areas.
+    (void)volume_gradients(t.dim, X, g);
+    const double scale = body.thickness / nv;
     for (int i = 0; i < nv; ++i) {
       for (int j = 0; j < i; ++j) {
         const int low = v[i] < v[j] ? i : j, high = low == i ? j : i;

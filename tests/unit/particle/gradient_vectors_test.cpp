@@ -4,6 +4,7 @@
 #include "particle/delaunay/bonds.hpp"
 #include "scene/reader.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <map>

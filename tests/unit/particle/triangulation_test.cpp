@@ -4,6 +4,7 @@
 #include "scene/errors.hpp"
 #include "scene/reader.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <filesystem>
