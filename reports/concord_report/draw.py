@@ -15,7 +15,7 @@ from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
 INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"))
 SIZE = 13
 HEIGHT = 380
-LEFT, BOTTOM, TOP = 58, 50, 12
+BOTTOM, TOP = 50, 12
 AREA = 360  # width of the axes beside labels; all in CSS pixels
 PLAIN = 500  # width of a plot without labels
 
@@ -32,11 +32,16 @@ def draw(spec):
     curves = spec["curves"]
     labelled = spec["labelled"]
     right = 22 + max(_width(_end_label(c)) for c in curves) if labelled else 14
-    width = LEFT + AREA + right if labelled else PLAIN
-    figure = Figure(figsize=(width / 72, HEIGHT / 72), dpi=72)
-    axes = figure.add_axes([LEFT / width, BOTTOM / HEIGHT, (width - LEFT - right) / width,
-                            (HEIGHT - BOTTOM - TOP - 16) / HEIGHT])
+    figure = Figure(figsize=(PLAIN / 72, HEIGHT / 72), dpi=72)
+    axes = figure.add_axes([0, 0, 1, 1])
     _frame(axes, spec, curves)
+    left = 18 + _tick_width(axes)
+    width = left + AREA + right if labelled else PLAIN
+    figure.set_size_inches(width / 72, HEIGHT / 72)
+    axes.set_position([left / width, BOTTOM / HEIGHT, (width - left - right) / width,
+                       (HEIGHT - BOTTOM - TOP - 16) / HEIGHT])
+    # the y label lies flat above the axis: no one reads sideways
+    figure.text(4 / width, 1 - (TOP + 5) / HEIGHT, spec["ylabel"], ha="left", va="bottom", color=INK)
     for number, curve in enumerate(curves):
         _line(axes, curve, number, len(curve["x"]) > 40)
     if spec["triangles"]:
@@ -52,6 +57,13 @@ def _width(words):
     return TextPath((0, 0), words, size=SIZE).get_extents().x1
 
 
+def _tick_width(axes):
+    """Of the longest tick label of the y axis."""
+    axis = axes.yaxis
+    places = [v for v in axis.get_majorticklocs() if axes.get_ylim()[0] <= v <= axes.get_ylim()[1]]
+    return max((_width(t) for t in axis.get_major_formatter().format_ticks(places) if t), default=20)
+
+
 def _end_label(curve):
     slope = curve.get("slope")
     return curve["label"] + (f" ({pretty(slope)})" if slope is not None else "")
@@ -65,9 +77,6 @@ def _frame(axes, spec, curves):
     axes.tick_params(length=3.5, width=0.8)
     axes.tick_params(which="minor", length=2, width=0.6)
     axes.set_xlabel(spec["xlabel"], labelpad=6)
-    # the y label lies flat above the axis: no one reads sideways
-    axes.text(-(LEFT - 4) / (axes.bbox.width), 1 + 9 / axes.bbox.height, spec["ylabel"],
-              transform=axes.transAxes, ha="left", va="bottom", color=INK)
     x = [v for c in curves for v in c["x"]]
     y = [v for c in curves for v in c["y"] + (c["low"] or []) + (c["high"] or [])]
     levels = [curve["x"] for curve in curves]

@@ -38,6 +38,19 @@ def _columns(header, column):
     return time, None
 
 
+def header_of(study):
+    """Column names of the first history.csv of every scene in the study."""
+    names, scenes = [], set()
+    for row in study.rows:
+        if row.get("run") and row.get("scene") not in scenes:
+            path = study.folder / row["run"] / "history.csv"
+            if path.is_file():
+                with open(path, encoding="utf-8", errors="replace") as stream:
+                    names += stream.readline().strip().split(",")
+                scenes.add(row.get("scene"))
+    return names
+
+
 def thinned(x, y, most=MOST_POINTS):
     """At most `most` points, keeping the smallest and largest value of every stretch."""
     if len(x) <= most:

@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import claims, outputs, pictures, plots, tables
+from . import claims, histories, outputs, pictures, plots, quantities, tables
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
 from .palette import css_variables, method_name, swatch
@@ -112,6 +112,7 @@ def build(studies, store, warnings):
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
     ordered = [(s, cases_of(s)) for s in studies]
     for study, cases in ordered:
+        quantities.learn(histories.header_of(study))
         warnings += _failed_runs(study, cases)
     jobs = {s.name: pictures.prepare(s, c, store, warnings) for s, c in ordered}
     pictures.render_missing([j for js in jobs.values() for j in js], store, warnings)

@@ -119,7 +119,7 @@ def render_missing(jobs, store, warnings):
     for job in jobs:
         if "missing" not in job:
             job["key"] = _key(job)
-            if store.get(job["key"], ".pic") is None:
+            if not _finished(store.get(job["key"], ".pic")):
                 wanted[job["key"]] = _render_job(job)
     if wanted:
         _render(wanted, store, warnings)
@@ -131,6 +131,11 @@ def render_missing(jobs, store, warnings):
                 continue
             head, _, job["image"] = data.partition(b"\n")
             job.update(json.loads(head))
+
+
+def _finished(data):
+    """True for a picture that need not be drawn again; a scatter plot only stands in for one."""
+    return data is not None and json.loads(data.partition(b"\n")[0])["how"] == "vtk"
 
 
 def _render(wanted, store, warnings):

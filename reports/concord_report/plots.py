@@ -5,7 +5,7 @@ import re
 
 from . import cache
 from .cases import chosen, fit_of
-from .digits import pretty
+from .digits import engineering, pretty
 from .histories import history_curves
 from .loading import dig, number
 from .palette import look
@@ -89,11 +89,21 @@ def history(study, cases, plot):
     curves, note = history_curves(study, cases, plot)
     if isinstance(curves, str):
         return curves
+    name, unit = name_and_unit(column)
+    curves, times = _scaled(curves, "x", "s")
+    curves, unit = _scaled(curves, "y", unit)
     ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in curves)
-    name = name_and_unit(column)[0]
-    return {"scales": ["linear", "linear"], "xlabel": "time [s]", "ylabel": axis(column),
+    ends += f" {unit}" if unit else ""
+    return {"scales": ["linear", "linear"], "xlabel": f"time [{times}]",
+            "ylabel": f"{name} [{unit}]" if unit else name,
             "curves": curves, "title": plot.get("title") or f"{_capital(name)} over time",
             "note": note, "triangles": [], "alt": f"Plot of {name} over time. Ranges: {ends}."}
+
+
+def _scaled(curves, along, unit):
+    """(curves, unit) with values that read well: 0.0005 m becomes 0.5 mm."""
+    factor, unit = engineering(max(abs(v) for c in curves for v in c[along]), unit)
+    return [{**c, along: [v * factor for v in c[along]]} for c in curves], unit
 
 
 def setting_of(row, key):

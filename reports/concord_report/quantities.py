@@ -43,6 +43,18 @@ FIELDS = {  # point fields of the frames: (text, unit)
 }
 
 
+SEEN = {}  # units that history.csv headers tell of scene quantities: "tip_z" -> "m"
+
+
+def learn(header):
+    """Keeps the units of a history.csv's columns: summary.json has the same names without them."""
+    for column in header:
+        for end, unit in UNITS:
+            if column.endswith(end) and len(column) > len(end):
+                SEEN[column[: -len(end)]] = unit
+                break
+
+
 def name_and_unit(path):
     """("tip z", "m") for "quantities.tip_z_m"; the unit is empty when there is none or unknown."""
     last = path.split(".")[-1]
@@ -51,7 +63,7 @@ def name_and_unit(path):
     for end, unit in UNITS:
         if last.endswith(end) and len(last) > len(end):
             return _words(last[: -len(end)]), unit
-    return _words(last), ""
+    return _words(last), SEEN.get(last, "") if path.startswith("quantities.") else ""
 
 
 def _words(name):

@@ -29,7 +29,7 @@ def draw(frame, job):
         axes = figure.add_axes([0, 0, 1, 1], projection="3d", elev=25, azim=-58)
         axes.patch.set_alpha(0)
         axes.scatter(*positions.T, **look)
-        axes.set_box_aspect(np.maximum(np.ptp(positions, axis=0), 1e-300), zoom=1.35)
+        axes.set_box_aspect(np.maximum(np.ptp(positions, axis=0), 1e-300), zoom=1.1)
     axes.set_axis_off()
     canvas.draw()
     return np.asarray(canvas.buffer_rgba()).copy()

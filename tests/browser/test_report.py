@@ -16,7 +16,7 @@ sys.path[:0] = [str(HERE), str(REPORTS)]
 
 import fixture  # noqa: E402  (needs the paths above)
 from concord_report import (cases, claims, digits, draw_labels, frames, histories, outputs,  # noqa: E402
-                            pictures, plots, tables)
+                            pictures, plots, quantities, tables)
 from concord_report.loading import InputError, Study, load_studies, number, study_verdict  # noqa: E402
 
 
@@ -56,6 +56,12 @@ class Numbers(unittest.TestCase):
     def test_chosen_values_have_no_trailing_zeros(self):
         self.assertEqual([digits.exact(v) for v in (0.25, 1000.0, 1e-6, 2.5e7)],
                          ["0.25", "1000", "10⁻⁶", "2.5×10⁷"])
+
+    def test_units_of_quantities_come_from_histories(self):
+        quantities.learn(["t_s", "made_up_force_N"])
+        self.assertEqual(quantities.axis("quantities.made_up_force"), "made up force [N]")
+        self.assertEqual(quantities.axis("errors.made_up_force"), "made up force")
+        self.assertEqual(quantities.axis("tip_z_m"), "tip z [m]")
 
     def test_units_get_prefixes(self):
         factor, unit = digits.engineering(2.6e4, "Pa")
