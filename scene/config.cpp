@@ -155,13 +155,19 @@ ConfigNode* ConfigNode::find(const std::string& name) {
 
 std::string ConfigNode::describe() const {
   switch (kind) {
-    case Kind::text: return in_quotes(text);
+    case Kind::text:
+      return in_quotes(text);
     case Kind::integer:
-    case Kind::real: return "the number " + text;
-    case Kind::boolean: return text;
-    case Kind::array: return fmt::format("an array of {}", elements.size());
-    case Kind::table: return "a table";
-    default: return text;
+    case Kind::real:
+      return "the number " + text;
+    case Kind::boolean:
+      return text;
+    case Kind::array:
+      return fmt::format("an array of {}", elements.size());
+    case Kind::table:
+      return "a table";
+    default:
+      return text;
   }
 }
 
@@ -183,8 +189,7 @@ ConfigNode read_toml(const std::filesystem::path& file) {
     root.where = {name, 1, 1};
     return root;
   } catch (const toml::parse_error& error) {
-    throw InputError(position(name, error.source()), "syntax",
-                     std::string(error.description()),
+    throw InputError(position(name, error.source()), "syntax", std::string(error.description()),
                      "TOML: key = value, text in double quotes, [table], [[list of tables]]");
   }
 }
@@ -201,7 +206,11 @@ void set_value(ConfigNode& root, const std::string& dotted_key, const std::strin
       node = &element_at(*node, part, dotted_key);
     } else if (node->kind == ConfigNode::Kind::table) {
       ConfigNode* child = node->find(part);
-      if (child == nullptr) child = &node->members.emplace_back(part, ConfigNode{}).second;
+      if (child == nullptr) {
+        child = &node->members.emplace_back(part, ConfigNode{}).second;
+        const int next = parts.peek();  // "boundary.0.kind" makes a list of tables
+        if (next >= '0' && next <= '9') child->kind = ConfigNode::Kind::array;
+      }
       node = child;
     } else {
       throw InputError({command_line, 0, 0}, dotted_key,

@@ -19,8 +19,8 @@ std::string input_message(const SourcePosition& where, const std::string& key,
 
 std::string solve_message(const std::string& quantity, long step, double time, long particle,
                           const std::string& detail) {
-  std::string text = fmt::format("the numerics failed: {} at step {}, time {:.6g} s", quantity,
-                                 step, time);
+  std::string text =
+      fmt::format("the numerics failed: {} at step {}, time {:.6g} s", quantity, step, time);
   if (particle >= 0) text += fmt::format(", particle {}", particle);
   if (!detail.empty()) text += ": " + detail;
   return text;
@@ -30,18 +30,12 @@ std::string solve_message(const std::string& quantity, long step, double time, l
 
 InputError::InputError(SourcePosition where, std::string key, std::string found,
                        std::string allowed)
-    : std::runtime_error(input_message(where, key, found, allowed)),
-      m_where(std::move(where)),
-      m_key(std::move(key)),
-      m_found(std::move(found)),
-      m_allowed(std::move(allowed)) {}
+    : std::runtime_error(input_message(where, key, found, allowed)), m_where(std::move(where)),
+      m_key(std::move(key)), m_found(std::move(found)), m_allowed(std::move(allowed)) {}
 
 SolveError::SolveError(std::string quantity, long step, double time, long particle,
                        const std::string& detail)
     : std::runtime_error(solve_message(quantity, step, time, particle, detail)),
-      m_quantity(std::move(quantity)),
-      m_step(step),
-      m_time(time),
-      m_particle(particle) {}
+      m_quantity(std::move(quantity)), m_step(step), m_time(time), m_particle(particle) {}
 
 }  // namespace concord

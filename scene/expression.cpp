@@ -57,8 +57,7 @@ struct Expression::Impl {
 
 Expression::Expression() : m_impl(std::make_unique<Impl>()) {}
 
-Expression::Expression(const std::string& text,
-                       const std::map<std::string, double>& parameters,
+Expression::Expression(const std::string& text, const std::map<std::string, double>& parameters,
                        const SourcePosition& where, const std::string& key) {
   if (text.find_first_not_of(" \t") == std::string::npos)
     throw InputError(where, key, "an empty expression", known_names(parameters));

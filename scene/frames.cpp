@@ -33,9 +33,9 @@ void write_dataset(hid_t parent, const std::string& name, hid_t file_type, hid_t
     hdf5_check(H5Pset_shuffle(properties), "shuffle " + name);
     hdf5_check(H5Pset_deflate(properties, 4), "deflate " + name);
   }
-  const Hdf5Handle set(H5Dcreate2(parent, name.c_str(), file_type, space, H5P_DEFAULT,
-                                  properties, H5P_DEFAULT),
-                       H5Dclose, "make dataset " + name);
+  const Hdf5Handle set(
+      H5Dcreate2(parent, name.c_str(), file_type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+      H5Dclose, "make dataset " + name);
   if (rows == 0) return;
   hdf5_check(H5Dwrite(set, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + name);
 }
@@ -141,10 +141,10 @@ void FrameWriter::write(double time, std::span<const Vec3> points,
   const std::string name = fmt::format("fields_{:04d}.hdf", m_series.size());
   const std::filesystem::path temporary = m_folder / (name + ".part");
   {
-    const Hdf5Handle file(
-        H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-        "create " + temporary.string());
-    write_grid(file, points, point_fields, cells_of(points.size(), connectivity, offsets, types));
+    const Hdf5Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+                          H5Fclose, "create " + temporary.string());
+    write_grid(file, points, point_fields,
+               cells_of(points.size(), connectivity, offsets, types));
     write_provenance(file, time);
   }
   std::filesystem::rename(temporary, m_folder / name);

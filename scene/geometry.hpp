@@ -26,7 +26,8 @@ struct Entity {
   bool flat = true;  ///< a straight curve, a planar surface
   int axis = -1;  ///< planar surface (3D) or straight curve (2D) normal to coordinate axis 0,
                   ///< 1, 2; else -1
-  std::vector<Index> closure;  ///< entities (indices) of lower dimension on its boundary or in it
+  std::vector<Index>
+      closure;  ///< entities (indices) of lower dimension on its boundary or in it
 };
 
 /// Cells and boundary facets of the body. Node numbers count from 0. Connectivity in gmsh's

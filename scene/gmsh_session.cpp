@@ -24,7 +24,7 @@ void set_options() {
   set("General.NumThreads", 1);    // the same mesh whatever the machine
   set("General.AbortOnError", 0);  // report, never end the program
   set("Mesh.RandomSeed", 1);
-  set("Mesh.RandomFactor", 1e-9);    // gmsh's own defaults, stated because a .geo can change
+  set("Mesh.RandomFactor", 1e-9);     // gmsh's own defaults, stated because a .geo can change
   set("Mesh.RandomFactor3D", 1e-12);  // them for all that follow
   set("Mesh.Algorithm", 6);
   set("Mesh.Algorithm3D", 1);

@@ -9,8 +9,8 @@
 
 namespace concord::scene {
 
-/// Owns an HDF5 identifier and closes it with the function given. Throws std::runtime_error when
-/// HDF5 returned an error instead of an identifier.
+/// Owns an HDF5 identifier and closes it with the function given. Throws std::runtime_error
+/// when HDF5 returned an error instead of an identifier.
 class Hdf5Handle {
  public:
   Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what)

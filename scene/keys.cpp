@@ -57,8 +57,10 @@ std::string key_pattern(const std::string& dotted) {
     const std::size_t end = std::min(dotted.find('.', begin), dotted.size());
     const std::string part = dotted.substr(begin, end - begin);
     if (pattern == "parameters") return "parameters.*";
-    if (is_index(part)) pattern += "[]";
-    else pattern += (pattern.empty() ? "" : ".") + part;
+    if (is_index(part))
+      pattern += "[]";
+    else
+      pattern += (pattern.empty() ? "" : ".") + part;
     begin = end + 1;
   }
   return pattern;

@@ -10,8 +10,8 @@ namespace concord::scene {
 /// boundary.0.kind -> boundary[].kind, parameters.U -> parameters.*.
 std::string key_pattern(const std::string& dotted);
 
-/// The entry of a pattern; throws std::logic_error if the table lacks it, so that the reader can
-/// ask for no key that `describe` does not tell of.
+/// The entry of a pattern; throws std::logic_error if the table lacks it, so that the reader
+/// can ask for no key that `describe` does not tell of.
 const KeyInfo& key_info(const std::string& pattern);
 
 /// Throws InputError at the first key that the table lacks, naming those allowed there.

@@ -62,11 +62,11 @@ std::vector<std::size_t> elements_of(int dim, int tag, int type, const Problem& 
     if (types[i] == type) {
       found = nodes[i];
     } else {
-      throw InputError(problem.geometry_where, "geometry",
-                       fmt::format("cells of gmsh's type {} where type {} was asked for",
-                                   types[i], type),
-                       "a geometry whose surfaces and volumes are transfinite when structured "
-                       "is 1 (lattices), and that gmsh can subdivide when it is 0");
+      throw InputError(
+          problem.geometry_where, "geometry",
+          fmt::format("cells of gmsh's type {} where type {} was asked for", types[i], type),
+          "a geometry whose surfaces and volumes are transfinite when structured "
+          "is 1 (lattices), and that gmsh can subdivide when it is 0");
     }
   }
   return found;
@@ -120,7 +120,8 @@ void collect_cells(Mesh& mesh, const Problem& problem) {
   const int facet = gmsh_element(mesh.shape, mesh.dim - 1, mesh.order);
   for (std::size_t e = 0; e < mesh.entities.size(); ++e) {
     if (mesh.entities[e].dim != mesh.dim - 1) continue;
-    for (const std::size_t tag : elements_of(mesh.dim - 1, mesh.entities[e].tag, facet, problem))
+    for (const std::size_t tag :
+         elements_of(mesh.dim - 1, mesh.entities[e].tag, facet, problem))
       facets.push_back(table[tag]);
     facet_entity.resize(facets.size() / static_cast<std::size_t>(node_count(facet)),
                         static_cast<Index>(e));
@@ -150,7 +151,8 @@ void collect_groups(Mesh& mesh) {
 
 Mesh make_mesh(const Problem& problem, const MeshRequest& request) {
   if (!(request.h > 0 && std::isfinite(request.h)))
-    throw InputError({"request", 0, 0}, "resolution", fmt::format("a spacing of {} m", request.h),
+    throw InputError({"request", 0, 0}, "resolution",
+                     fmt::format("a spacing of {} m", request.h),
                      "a positive number: the spacing is reference_length/resolution");
   Mesh mesh;
   mesh.dim = problem.dim();
@@ -167,6 +169,7 @@ Mesh make_mesh(const Problem& problem, const MeshRequest& request) {
   collect_cells(mesh, problem);
   collect_groups(mesh);
   snap_to_planes(mesh, problem);
+  if (lattice) snap_lattice(mesh);
   check_groups(mesh, problem);
   return mesh;
 }

@@ -13,8 +13,8 @@ Tangent NeoHookean::tangent(const Mat3& H) const {
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l)
-          A(3 * i + j, 3 * k + l) = (i == k && j == l ? mu : 0) + lambda * G(i, j) * G(k, l) +
-                                    c * G(i, l) * G(k, j);
+          A(3 * i + j, 3 * k + l) =
+              (i == k && j == l ? mu : 0) + lambda * G(i, j) * G(k, l) + c * G(i, l) * G(k, j);
   return A;
 }
 
@@ -33,10 +33,8 @@ Tangent StVenantKirchhoff::tangent(const Mat3& H) const {
 }
 
 ElasticLaw::ElasticLaw(const Material& material, Dimension dimension)
-    : m_model(material.model),
-      m_dimension(dimension),
-      m_neo_hookean{material.lambda, material.mu},
-      m_svk{material.lambda, material.mu} {}
+    : m_model(material.model), m_dimension(dimension),
+      m_neo_hookean{material.lambda, material.mu}, m_svk{material.lambda, material.mu} {}
 
 Mat3 ElasticLaw::complete(const Mat3& H) const {
   if (m_dimension == Dimension::three_d) return H;
@@ -63,8 +61,8 @@ Mat3 ElasticLaw::stress(const Mat3& H) const {
 
 Tangent ElasticLaw::tangent(const Mat3& H) const {
   const Mat3 full = complete(H);
-  Tangent A = m_model == MaterialModel::neo_hookean ? m_neo_hookean.tangent(full)
-                                                    : m_svk.tangent(full);
+  Tangent A =
+      m_model == MaterialModel::neo_hookean ? m_neo_hookean.tangent(full) : m_svk.tangent(full);
   if (m_dimension != Dimension::plane_stress) return A;
   const Eigen::Matrix<double, 9, 1> column = A.col(8);
   const Eigen::Matrix<double, 1, 9> row = A.row(8);
@@ -75,9 +73,7 @@ Tangent ElasticLaw::tangent(const Mat3& H) const {
   return A;
 }
 
-Mat3 cauchy_stress(const Mat3& P, const Mat3& F) {
-  return P * F.transpose() / F.determinant();
-}
+Mat3 cauchy_stress(const Mat3& P, const Mat3& F) { return P * F.transpose() / F.determinant(); }
 
 double von_mises(const Mat3& sigma) {
   const Mat3 s = sigma - sigma.trace() / 3 * Mat3::Identity();

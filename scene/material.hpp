@@ -21,8 +21,10 @@ using Tangent = Eigen::Matrix<double, 9, 9>;
 /// ln(1 + x); full relative accuracy near 0 for floating-point T.
 template <class T> T log_one_plus(const T& x) {
   using std::log;
-  if constexpr (std::is_floating_point_v<T>) return std::log1p(x);
-  else return log(T(1.0) + x);
+  if constexpr (std::is_floating_point_v<T>)
+    return std::log1p(x);
+  else
+    return log(T(1.0) + x);
 }
 
 /// x - ln(1 + x) without cancellation: sum_k (-x)^k/k from k = 2, where |x| < 0.1 (18 terms
@@ -115,8 +117,10 @@ struct NeoHookean {
  private:
   template <class T> static T exp_minus_one(const T& x) {
     using std::exp;
-    if constexpr (std::is_floating_point_v<T>) return std::expm1(x);
-    else return exp(x) - T(1.0);
+    if constexpr (std::is_floating_point_v<T>)
+      return std::expm1(x);
+    else
+      return exp(x) - T(1.0);
   }
 };
 
@@ -160,9 +164,9 @@ class ElasticLaw {
   /// H with the out-of-plane part that the dimension asks for: 3D as given; plane strain
   /// H_33 = 0; plane stress H_33 from P_33 = 0.
   Mat3 complete(const Mat3& H) const;
-  /// Energy [J/m^3], stress [Pa] and tangent [Pa] at complete(H). In plane stress the tangent is
-  /// condensed, A_ijkl - A_ij33 A_33kl / A_3333, so that it is the derivative of the in-plane
-  /// stress along the constraint; its 33 row and column vanish.
+  /// Energy [J/m^3], stress [Pa] and tangent [Pa] at complete(H). In plane stress the tangent
+  /// is condensed, A_ijkl - A_ij33 A_33kl / A_3333, so that it is the derivative of the
+  /// in-plane stress along the constraint; its 33 row and column vanish.
   double energy(const Mat3& H) const;
   Mat3 stress(const Mat3& H) const;
   Tangent tangent(const Mat3& H) const;

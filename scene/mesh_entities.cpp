@@ -14,8 +14,8 @@ namespace concord::scene {
 namespace {
 
 using DimTag = std::pair<int, int>;
-constexpr double flat_tolerance = 1e-10;  // of the entity's size: far above round-off, far below
-                                          // any curvature that a mesh could resolve
+constexpr double flat_tolerance = 1e-10;  // of the entity's size: far above round-off, far
+                                          // below any curvature that a mesh could resolve
 
 /// Points of a curve or surface on a regular grid of its parameters.
 std::vector<Vec3> sample(int dim, int tag) {
@@ -29,7 +29,8 @@ std::vector<Vec3> sample(int dim, int tag) {
     }
   gmsh::model::getValue(dim, tag, parameters, X);
   std::vector<Vec3> points;
-  for (std::size_t i = 0; i + 2 < X.size(); i += 3) points.emplace_back(X[i], X[i + 1], X[i + 2]);
+  for (std::size_t i = 0; i + 2 < X.size(); i += 3)
+    points.emplace_back(X[i], X[i + 1], X[i + 2]);
   return points;
 }
 
@@ -67,7 +68,8 @@ void classify(Entity& entity, int mesh_dim) {
   if (entity.dim == 0 || entity.dim == mesh_dim) return;
   std::string type;
   gmsh::model::getType(entity.dim, entity.tag, type);
-  if (type != "Line" && type != "Plane") entity.flat = is_flat(entity.dim, sample(entity.dim, entity.tag));
+  if (type != "Line" && type != "Plane")
+    entity.flat = is_flat(entity.dim, sample(entity.dim, entity.tag));
 }
 
 void find_closure(const std::map<DimTag, Index>& index, Entity& entity) {
@@ -87,7 +89,8 @@ void find_closure(const std::map<DimTag, Index>& index, Entity& entity) {
             closure.insert(found->second);
       }
       for (const DimTag& d : below)
-        if (const auto found = index.find(d); found != index.end()) closure.insert(found->second);
+        if (const auto found = index.find(d); found != index.end())
+          closure.insert(found->second);
       std::sort(below.begin(), below.end());
       below.erase(std::unique(below.begin(), below.end()), below.end());
       level = below;

@@ -51,8 +51,7 @@ double corner_shape(std::size_t corners, int dim, std::size_t c, const Vec3& xi)
 
 /// Per face: which nodes of the cell are the nodes of the facet, in gmsh's order.
 Local face_nodes(const Mesh& mesh) {
-  const std::vector<Vec3> cell =
-      local_nodes(gmsh_element(mesh.shape, mesh.dim, mesh.order));
+  const std::vector<Vec3> cell = local_nodes(gmsh_element(mesh.shape, mesh.dim, mesh.order));
   const std::vector<Vec3> facet =
       local_nodes(gmsh_element(mesh.shape, mesh.dim - 1, mesh.order));
   Local faces;
@@ -106,7 +105,8 @@ std::vector<Face> single_faces(const Mesh& mesh) {
       if (outer) faces.push_back({key_of(nodes, corners[f].size()), c, static_cast<int>(f)});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.key < b.key; });
+  std::sort(faces.begin(), faces.end(),
+            [](const Face& a, const Face& b) { return a.key < b.key; });
   std::vector<Face> single;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const bool before = i > 0 && faces[i - 1].key == faces[i].key;
@@ -125,7 +125,8 @@ Index entity_around(const Mesh& mesh, const Key& key) {
       if (node < 0) return true;
       const Index own = mesh.node_entity[static_cast<std::size_t>(node)];
       return own == static_cast<Index>(e) ||
-             std::find(entity.closure.begin(), entity.closure.end(), own) != entity.closure.end();
+             std::find(entity.closure.begin(), entity.closure.end(), own) !=
+                 entity.closure.end();
     });
     if (all) return static_cast<Index>(e);
   }
@@ -141,7 +142,8 @@ void claim_node(Mesh& mesh, Index node, Index entity) {
   if (surface.flat) return;
   const Vec3& X = mesh.nodes[a];
   std::vector<double> closest, parameters;
-  gmsh::model::getClosestPoint(surface.dim, surface.tag, {X[0], X[1], X[2]}, closest, parameters);
+  gmsh::model::getClosestPoint(surface.dim, surface.tag, {X[0], X[1], X[2]}, closest,
+                               parameters);
   mesh.nodes[a] = Vec3(closest[0], closest[1], closest[2]);
 }
 

@@ -35,13 +35,21 @@ std::array<bool, 3> prescribed(const Mesh& mesh, const BoundaryCondition& bc) {
   for (int k = 0; k < mesh.dim; ++k) {
     bool& p = components[static_cast<std::size_t>(k)];
     switch (bc.kind) {
-      case BoundaryKind::fixed: p = true; break;
-      case BoundaryKind::symmetric: p = k == axis; break;
-      case BoundaryKind::antisymmetric: p = k != axis; break;
+      case BoundaryKind::fixed:
+        p = true;
+        break;
+      case BoundaryKind::symmetric:
+        p = k == axis;
+        break;
+      case BoundaryKind::antisymmetric:
+        p = k != axis;
+        break;
       case BoundaryKind::displacement:
         p = bc.value_from_exact || bc.value.component[static_cast<std::size_t>(k)].has_value();
         break;
-      case BoundaryKind::traction: p = false; break;
+      case BoundaryKind::traction:
+        p = false;
+        break;
     }
   }
   return components;
@@ -65,13 +73,15 @@ void check_values(const Mesh& mesh, const Problem& problem, double t) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (!components[k]) continue;
         Prescription& p = at[static_cast<std::size_t>(a)][k];
-        if (p.condition != nullptr && !(std::abs(p.value - value[static_cast<Index>(k)]) <= tolerance))
+        if (p.condition != nullptr &&
+            !(std::abs(p.value - value[static_cast<Index>(k)]) <= tolerance))
           throw InputError(
               bc.where, "group",
-              fmt::format("{} with {} = {:g} m at ({:g}, {:g}, {:g}), where group {} has {:g} m",
-                          in_quotes(bc.group), "u_" + std::to_string(k + 1),
-                          value[static_cast<Index>(k)], X[0], X[1], X[2],
-                          in_quotes(p.condition->group), p.value),
+              fmt::format(
+                  "{} with {} = {:g} m at ({:g}, {:g}, {:g}), where group {} has {:g} m",
+                  in_quotes(bc.group), "u_" + std::to_string(k + 1),
+                  value[static_cast<Index>(k)], X[0], X[1], X[2], in_quotes(p.condition->group),
+                  p.value),
               "conditions that agree where their groups meet; leave a component out with "
               "\"free\"");
         p = {&bc, value[static_cast<Index>(k)]};
@@ -104,7 +114,8 @@ void check_tractions(const Mesh& mesh, const Problem& problem) {
 
 }  // namespace
 
-std::vector<Index> Mesh::group_nodes(const std::string& name, const SourcePosition& where) const {
+std::vector<Index> Mesh::group_nodes(const std::string& name,
+                                     const SourcePosition& where) const {
   const Group& group = find_group(*this, name, where);
   std::vector<char> inside(entities.size(), 0);
   for (const Index e : group.entities) {
@@ -114,7 +125,8 @@ std::vector<Index> Mesh::group_nodes(const std::string& name, const SourcePositi
   }
   std::vector<Index> found;
   for (std::size_t a = 0; a < nodes.size(); ++a)
-    if (inside[static_cast<std::size_t>(node_entity[a])]) found.push_back(static_cast<Index>(a));
+    if (inside[static_cast<std::size_t>(node_entity[a])])
+      found.push_back(static_cast<Index>(a));
   if (found.empty())
     throw InputError(where, "group", in_quotes(name) + ", which holds no node of the body",
                      "a group on the body");
@@ -155,13 +167,16 @@ int Mesh::group_axis(const std::string& name, const SourcePosition& where) const
 }
 
 void check_groups(const Mesh& mesh, const Problem& problem) {
-  for (const BoundaryCondition& bc : problem.boundaries)
+  for (const BoundaryCondition& bc : problem.boundaries) {
     (void)mesh.group_nodes(bc.group, bc.where);
+    (void)prescribed(mesh, bc);  // planes of symmetry are planes
+  }
   for (const Quantity& quantity : problem.quantities)
     if (!quantity.group.empty()) (void)mesh.group_nodes(quantity.group, quantity.where);
   check_tractions(mesh, problem);
   if (problem.boundaries.size() < 2) return;
-  for (const double fraction : {0.5, 1.0}) check_values(mesh, problem, fraction * problem.end_time);
+  for (const double fraction : {0.5, 1.0})
+    check_values(mesh, problem, fraction * problem.end_time);
 }
 
 }  // namespace concord::scene

@@ -1,6 +1,6 @@
 #pragma once
-// Steps of make_mesh, in its order; each works on the mesh made so far. Those that ask gmsh need
-// a GmshSession held by the caller.
+// Steps of make_mesh, in its order; each works on the mesh made so far. Those that ask gmsh
+// need a GmshSession held by the caller.
 
 #include "scene/geometry.hpp"
 
@@ -13,8 +13,8 @@ void collect_entities(Mesh& mesh, const Problem& problem);
 /// format").
 int gmsh_element(CellShape shape, int dim, int order);
 
-/// Fills facets and facet_entity from the oriented cells; gmsh's own surface elements (nodes and
-/// entities) say which entity a face lies on. Throws InputError if a face lies on none.
+/// Fills facets and facet_entity from the oriented cells; gmsh's own surface elements (nodes
+/// and entities) say which entity a face lies on. Throws InputError if a face lies on none.
 void collect_facets(Mesh& mesh, const Problem& problem, const std::vector<Index>& gmsh_facets,
                     const std::vector<Index>& gmsh_facet_entity);
 
@@ -22,6 +22,10 @@ void collect_facets(Mesh& mesh, const Problem& problem, const std::vector<Index>
 /// the one of the entity's first corner. Plane meshes get Z = 0; throws InputError if they lie
 /// elsewhere.
 void snap_to_planes(Mesh& mesh, const Problem& problem);
+
+/// Coordinates of a lattice that gmsh has to 1e-9 or so become those of its evenly divided
+/// straight curves, (a (n - i) + b i)/n, where they are that near.
+void snap_lattice(Mesh& mesh);
 
 /// Gives every cell a positive Jacobian at its corners by reflecting those that are negative.
 /// Throws InputError for cells that are folded.

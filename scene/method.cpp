@@ -33,9 +33,9 @@ void check(const std::string& key, const ParameterInfo& info, const std::string&
   const double value = read_number(text);
   if (!(value >= info.minimum && value <= info.maximum))
     throw InputError(setting_position, key, in_quotes(text),
-                     "a number " + (info.range.empty()
-                                        ? fmt::format("from {} to {}", info.minimum, info.maximum)
-                                        : info.range));
+                     "a number " + (info.range.empty() ? fmt::format("from {} to {}",
+                                                                     info.minimum, info.maximum)
+                                                       : info.range));
 }
 
 bool same(const std::string& a, const std::string& b) {
@@ -102,7 +102,8 @@ const Method& MethodRegistry::find(const std::string& name) const {
   if (found != m_methods.end()) return *found->second;
   std::vector<std::string> names;
   for (const auto& [known, method] : m_methods) names.push_back(known);
-  throw InputError({"command line", 0, 0}, "method", in_quotes(name), allowed_words(name, names));
+  throw InputError({"command line", 0, 0}, "method", in_quotes(name),
+                   allowed_words(name, names));
 }
 
 std::vector<const Method*> MethodRegistry::all() const {

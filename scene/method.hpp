@@ -23,7 +23,7 @@ struct ParameterInfo {
   std::string range;          ///< as text: ">= 0", "cubic-spline | wendland-c2"
   std::string meaning;        ///< one sentence with the formula or equation number
   double minimum = -1e300, maximum = 1e300;  ///< inclusive, for numbers
-  std::vector<std::string> choices{};         ///< non-empty: one of these words
+  std::vector<std::string> choices{};        ///< non-empty: one of these words
 };
 
 /// Settings of one method in one run: defaults from the table, replaced by what the user set.
@@ -98,8 +98,9 @@ struct Result {
 struct MethodInfo {
   std::string name, title, source;
   std::vector<ParameterInfo> parameters{};
-  /// Properties that the method by its nature does not have, with the reason, e.g. {"equilibrium patch test", "..."}. The
-  /// property tests assert the failure, the report tells it.
+  /// Properties that the method by its nature does not have, with the reason, e.g.
+  /// {"equilibrium patch test", "..."}. The property tests assert the failure, the report tells
+  /// it.
   std::map<std::string, std::string> cannot{};
 };
 

@@ -22,7 +22,8 @@ std::uint64_t mix(std::uint64_t z) {
 
 /// Projector on the directions in which nodes of an entity may move; the identity for curved
 /// entities, whose nodes are put back afterwards.
-Mat3 tangent_projector(const Mesh& mesh, const Entity& entity, const std::vector<Vec3>& points) {
+Mat3 tangent_projector(const Mesh& mesh, const Entity& entity,
+                       const std::vector<Vec3>& points) {
   Mat3 whole = Mat3::Identity();
   if (mesh.dim == 2) whole(2, 2) = 0;
   if (entity.dim == 0) return Mat3::Zero();
@@ -104,8 +105,8 @@ void perturb(Mesh& mesh, const Problem& problem, double fraction, std::uint64_t 
   for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
     Vec3 d;
     for (int k = 0; k < 3; ++k)
-      d[k] = fraction * mesh.h *
-             (2 * uniform_random(seed, a, static_cast<std::uint64_t>(k)) - 1);
+      d[k] =
+          fraction * mesh.h * (2 * uniform_random(seed, a, static_cast<std::uint64_t>(k)) - 1);
     mesh.nodes[a] += projector[static_cast<std::size_t>(mesh.node_entity[a])] * d;
   }
   put_back_on_curved(mesh, problem);

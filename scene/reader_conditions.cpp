@@ -83,8 +83,8 @@ VectorExpression read_vector(const ConfigNode& node, const Symbols& symbols,
     throw bad_value(node, vector_allowed(problem, free, exact));
   VectorExpression value;
   for (std::size_t i = 0; i < size; ++i)
-    value.component[i] = read_component(node.elements[i], static_cast<int>(i), symbols, problem,
-                                        free, exact);
+    value.component[i] =
+        read_component(node.elements[i], static_cast<int>(i), symbols, problem, free, exact);
   return value;
 }
 

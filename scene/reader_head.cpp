@@ -74,10 +74,14 @@ void read_constants(const Section& section, Material& material) {
 
 Symbols constants(const Problem& problem) {
   const Material& m = problem.material;
-  return {{"E", m.E},           {"nu", m.nu},
-          {"rho", m.rho0},      {"lambda", m.lambda},
-          {"mu", m.mu},         {"c_s", m.shear_wave_speed()},
-          {"c_p", m.longitudinal_wave_speed()}, {"L", problem.reference_length}};
+  return {{"E", m.E},
+          {"nu", m.nu},
+          {"rho", m.rho0},
+          {"lambda", m.lambda},
+          {"mu", m.mu},
+          {"c_s", m.shear_wave_speed()},
+          {"c_p", m.longitudinal_wave_speed()},
+          {"L", problem.reference_length}};
 }
 
 void check_name(const std::string& name, const ConfigNode& node, const Symbols& taken) {
@@ -91,7 +95,8 @@ void check_name(const std::string& name, const ConfigNode& node, const Symbols& 
   bool used = taken.contains(name);
   for (const std::string& word : reserved) used = used || word == name;
   if (used)
-    throw InputError(node.key_where, node.key, in_quotes(name) + ", which has a meaning already",
+    throw InputError(node.key_where, node.key,
+                     in_quotes(name) + ", which has a meaning already",
                      "another name than X, Y, Z, t, pi, h, structured, E, nu, rho, lambda, mu, "
                      "c_s, c_p, L");
 }

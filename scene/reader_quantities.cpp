@@ -73,7 +73,8 @@ void check_pair(const BoundaryCondition& first, const BoundaryCondition& second,
     throw InputError(second.where, "group", in_quotes(second.group) + " with a second traction",
                      "one traction a group");
   for (std::size_t k = 0; k < static_cast<std::size_t>(dim); ++k)
-    if ((prescribes(first, k) && loads(second, k)) || (loads(first, k) && prescribes(second, k)))
+    if ((prescribes(first, k) && loads(second, k)) ||
+        (loads(first, k) && prescribes(second, k)))
       throw InputError(second.where, "group",
                        fmt::format("{} with a traction and a prescribed displacement in "
                                    "direction {}",

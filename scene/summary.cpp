@@ -24,7 +24,8 @@ Json map_of(const std::map<std::string, double>& values) {
 
 }  // namespace
 
-std::string summary_json(const RunIdentity& id, const Result& result, const std::string& error) {
+std::string summary_json(const RunIdentity& id, const Result& result,
+                         const std::string& error) {
   Json out;
   out["scene"] = id.scene;
   out["method"] = id.method;
@@ -41,7 +42,8 @@ std::string summary_json(const RunIdentity& id, const Result& result, const std:
   put(out, "t_end", result.t_end);
   put(out, "setup_s", result.setup_s);
   put(out, "wall_s", result.wall_s);
-  const double updates = static_cast<double>(result.particles) * static_cast<double>(result.steps);
+  const double updates =
+      static_cast<double>(result.particles) * static_cast<double>(result.steps);
   if (result.dt > 0 && updates > 0)
     put(out, "ns_per_particle_step", 1e9 * result.wall_s / updates);
   out["peak_rss_mb"] = peak_rss_mb();

@@ -3,9 +3,9 @@
 #include "scene/suggest.hpp"
 #include "scene/unit_text.hpp"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cctype>
 #include <optional>
 #include <string_view>
 
@@ -19,24 +19,31 @@ struct NamedUnit {
   bool prefixes;
 };
 
-// SI base and derived units (BIPM SI brochure, 9th edition, tables 2, 4 and 8). The gram carries
-// the prefixes of the kilogram. min, h, d are omitted: "h" would be mistaken for a spacing.
+// SI base and derived units (BIPM SI brochure, 9th edition, tables 2, 4 and 8). The gram
+// carries the prefixes of the kilogram. min, h, d are omitted: "h" would be mistaken for a
+// spacing.
 constexpr NamedUnit units[] = {
-    {"m", 1, {1, 0, 0}, true},      {"g", 1e-3, {0, 1, 0}, true},
-    {"s", 1, {0, 0, 1}, true},      {"N", 1, {1, 1, -2}, true},
-    {"Pa", 1, {-1, 1, -2}, true},   {"J", 1, {2, 1, -2}, true},
-    {"W", 1, {2, 1, -3}, true},     {"Hz", 1, {0, 0, -1}, true},
-    {"t", 1e3, {0, 1, 0}, false},   {"rad", 1, {}, false},
+    {"m", 1, {1, 0, 0}, true},
+    {"g", 1e-3, {0, 1, 0}, true},
+    {"s", 1, {0, 0, 1}, true},
+    {"N", 1, {1, 1, -2}, true},
+    {"Pa", 1, {-1, 1, -2}, true},
+    {"J", 1, {2, 1, -2}, true},
+    {"W", 1, {2, 1, -3}, true},
+    {"Hz", 1, {0, 0, -1}, true},
+    {"t", 1e3, {0, 1, 0}, false},
+    {"rad", 1, {}, false},
     {"deg", 3.14159265358979323846 / 180, {}, false},
-    {"%", 1e-2, {}, false},         {"1", 1, {}, false},
+    {"%", 1e-2, {}, false},
+    {"1", 1, {}, false},
 };
 
 struct Prefix {
   std::string_view symbol;
   double factor;
 };
-constexpr Prefix prefixes[] = {{"", 1},    {"T", 1e12}, {"G", 1e9},   {"M", 1e6},
-                               {"k", 1e3}, {"h", 1e2},  {"d", 1e-1},  {"c", 1e-2},
+constexpr Prefix prefixes[] = {{"", 1},     {"T", 1e12}, {"G", 1e9},         {"M", 1e6},
+                               {"k", 1e3},  {"h", 1e2},  {"d", 1e-1},        {"c", 1e-2},
                                {"m", 1e-3}, {"u", 1e-6}, {"\xC2\xB5", 1e-6}, {"n", 1e-9},
                                {"p", 1e-12}};
 
@@ -156,8 +163,8 @@ double parse_quantity(const std::string& text, const UnitDimension& expected,
   if (value.dimension == expected) return value.factor;
   if (value.dimension == unit::none)
     throw InputError(where, key, in_quotes(text) + " without a unit", allowed);
-  throw InputError(where, key,
-                   in_quotes(text) + ", a " + dimension_name(value.dimension), allowed);
+  throw InputError(where, key, in_quotes(text) + ", a " + dimension_name(value.dimension),
+                   allowed);
 }
 
 }  // namespace concord::scene

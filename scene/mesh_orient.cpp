@@ -1,4 +1,4 @@
-// Exact coordinates on planes, positive cells.
+// Cells with positive Jacobians.
 
 #include "scene/mesh_parts.hpp"
 
@@ -12,37 +12,6 @@
 
 namespace concord::scene {
 namespace {
-
-constexpr double plane_tolerance = 1e-10;  // of the body's size
-
-double body_size(const Mesh& mesh) {
-  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-  for (const Vec3& X : mesh.nodes) {
-    low = low.cwiseMin(X);
-    high = high.cwiseMax(X);
-  }
-  return (high - low).norm();
-}
-
-std::vector<std::vector<Index>> nodes_by_entity(const Mesh& mesh) {
-  std::vector<std::vector<Index>> nodes(mesh.entities.size());
-  for (std::size_t a = 0; a < mesh.nodes.size(); ++a)
-    if (mesh.node_entity[a] >= 0)
-      nodes[static_cast<std::size_t>(mesh.node_entity[a])].push_back(static_cast<Index>(a));
-  return nodes;
-}
-
-/// The exact coordinate of a plane: that of a corner as the .geo states it.
-double plane_coordinate(const Mesh& mesh, const Entity& entity, int axis, double nearby) {
-  for (const Index e : entity.closure) {
-    const Entity& corner = mesh.entities[static_cast<std::size_t>(e)];
-    if (corner.dim != 0) continue;
-    std::vector<double> X;
-    gmsh::model::getValue(0, corner.tag, {}, X);
-    return X[static_cast<std::size_t>(axis)];
-  }
-  return nearby;
-}
 
 double corner_jacobian(const Mesh& mesh, const Index* cell, int corner) {
   const auto X = [&](int c) -> const Vec3& {
@@ -95,38 +64,6 @@ Vec3 hypercube_corner(int corner, int dim) {
           dim == 2 ? 0.0 : (corner >= 4 ? 1.0 : -1.0)};
 }
 
-void snap_to_planes(Mesh& mesh, const Problem& problem) {
-  const double tolerance = plane_tolerance * body_size(mesh);
-  if (mesh.dim == 2)
-    for (Vec3& X : mesh.nodes) {
-      if (std::abs(X[2]) > tolerance)
-        throw InputError(problem.geometry_where, "geometry",
-                         fmt::format("a plane body with a point at Z = {:g}", X[2]),
-                         "surfaces in the plane Z = 0");
-      X[2] = 0;
-    }
-  const auto nodes = nodes_by_entity(mesh);
-  for (Entity& entity : mesh.entities) {
-    if (entity.dim != mesh.dim - 1 || !entity.flat) continue;
-    std::vector<Index> closure = nodes[static_cast<std::size_t>(&entity - mesh.entities.data())];
-    for (const Index e : entity.closure)
-      closure.insert(closure.end(), nodes[static_cast<std::size_t>(e)].begin(),
-                     nodes[static_cast<std::size_t>(e)].end());
-    if (closure.empty()) continue;
-    for (int k = 0; k < mesh.dim; ++k) {
-      const auto coordinate = [&](Index a) { return mesh.nodes[static_cast<std::size_t>(a)][k]; };
-      const auto [low, high] = std::minmax_element(
-          closure.begin(), closure.end(),
-          [&](Index a, Index b) { return coordinate(a) < coordinate(b); });
-      if (coordinate(*high) - coordinate(*low) > tolerance) continue;
-      entity.axis = k;
-      const double exact = plane_coordinate(mesh, entity, k, coordinate(*low));
-      for (const Index a : closure) mesh.nodes[static_cast<std::size_t>(a)][k] = exact;
-      break;
-    }
-  }
-}
-
 void orient_cells(Mesh& mesh, const Problem& problem) {
   const int corners = mesh.shape == CellShape::simplex ? 1 : corner_count(mesh.shape, mesh.dim);
   const int type = gmsh_element(mesh.shape, mesh.dim, mesh.order);
@@ -152,10 +89,11 @@ void orient_cells(Mesh& mesh, const Problem& problem) {
     }
     if (J[0] <= 0) {
       const Vec3& X = mesh.nodes[static_cast<std::size_t>(cell[0])];
-      throw InputError(problem.geometry_where, "geometry",
-                       fmt::format("a folded or flat cell at ({:g}, {:g}, {:g})", X[0], X[1], X[2]),
-                       "a geometry and a resolution that gmsh meshes with cells of positive "
-                       "volume; try a finer resolution");
+      throw InputError(
+          problem.geometry_where, "geometry",
+          fmt::format("a folded or flat cell at ({:g}, {:g}, {:g})", X[0], X[1], X[2]),
+          "a geometry and a resolution that gmsh meshes with cells of positive "
+          "volume; try a finer resolution");
     }
   }
 }

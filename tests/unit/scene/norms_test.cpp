@@ -1,0 +1,69 @@
+#include "scene/norms.hpp"
+#include "scene/reader.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <gtest/gtest.h>
+
+using namespace concord;
+using namespace concord::scene;
+
+namespace {
+
+/// The exact field of a problem times a factor.
+class Scaled : public Field {
+ public:
+  Scaled(const Problem& problem, double factor) : m_problem(problem), m_factor(factor) {}
+  void evaluate(std::span<const Vec3> X, std::span<Vec3> u,
+                std::span<Mat3> gradient) const override {
+    for (std::size_t i = 0; i < X.size(); ++i) {
+      u[i] = m_factor * (*m_problem.exact_displacement)(X[i], m_problem.end_time);
+      if (!gradient.empty())
+        gradient[i] = m_factor * m_problem.exact_gradient(X[i], m_problem.end_time);
+    }
+  }
+
+ private:
+  const Problem& m_problem;
+  double m_factor;
+};
+
+}  // namespace
+
+TEST(Norms, RelativeL2ByHand) {
+  const std::vector<Vec3> a{Vec3(1, 0, 0), Vec3(0, 2, 0)}, b{Vec3(1, 0, 0), Vec3(0, 1, 0)};
+  const std::vector<double> w{1, 3};
+  EXPECT_DOUBLE_EQ(relative_l2(a, b, w), std::sqrt(3.0 / 4));
+  const std::vector<Vec3> zero(2, Vec3::Zero());
+  EXPECT_DOUBLE_EQ(relative_l2(a, zero, w), std::sqrt(1 + 3 * 4.0));  // absolute
+}
+
+TEST(Norms, ScaledSolutionHasTheScaleAsError) {
+  const Problem p = read_problem("swinging_cube");
+  Result r;
+  r.t_end = p.end_time;
+  r.field = std::make_shared<Scaled>(p, 1.01);
+  for (double x = 0.1; x < 1; x += 0.2) {
+    const Vec3 X(x, 0.5 * x, 1 - x);
+    r.samples.X.push_back(X);
+    r.samples.u.push_back(1.02 * (*p.exact_displacement)(X, r.t_end));
+    r.samples.v.push_back(0.97 * (*p.exact_velocity)(X, r.t_end));
+    r.samples.F.push_back(Mat3::Identity() + 1.04 * p.exact_gradient(X, r.t_end));
+    r.samples.weight.push_back(x);
+  }
+  add_exact_errors(p, r);
+  EXPECT_NEAR(r.errors.at("displacement_l2"), 0.02, 1e-12);
+  EXPECT_NEAR(r.errors.at("velocity_l2"), 0.03, 1e-12);
+  EXPECT_NEAR(r.errors.at("gradient_l2"), 0.04, 1e-10);
+  EXPECT_NEAR(r.errors.at("displacement_l2_common"), 0.01, 1e-12);
+  EXPECT_NEAR(r.errors.at("gradient_l2_common"), 0.01, 1e-10);
+  EXPECT_NEAR(field_difference(p, *r.field, Scaled(p, 1)), 0.01, 1e-12);
+  EXPECT_GT(r.errors.at("displacement_max"), 0);
+}
+
+TEST(Norms, NothingWithoutAnExactSolution) {
+  const Problem p = read_problem("cooks_membrane");
+  Result r;
+  add_exact_errors(p, r);
+  EXPECT_TRUE(r.errors.empty());
+}
