@@ -15,8 +15,9 @@ std::vector<Index> sweep_order(const scene::Mesh& mesh) {
     high = high.cwiseMax(X);
   }
   std::array<int, 3> axis{0, 1, 2};  // longest first
-  std::stable_sort(axis.begin(), axis.begin() + mesh.dim,
-                   [&](int i, int j) { return high[i] - low[i] > 1.0001 * (high[j] - low[j]); });
+  std::stable_sort(axis.begin(), axis.begin() + mesh.dim, [&](int i, int j) {
+    return high[i] - low[i] > 1.0001 * (high[j] - low[j]);
+  });
   struct Key {
     long slab, row;
     double place;
@@ -27,7 +28,8 @@ std::vector<Index> sweep_order(const scene::Mesh& mesh) {
   for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
     const Vec3 X = mesh.nodes[a] - low;
     const auto cell = [&](int i) { return std::lround(X[axis[i]] / mesh.h); };
-    keys.push_back({cell(0), mesh.dim == 3 ? cell(1) : 0, X[axis[mesh.dim - 1]], static_cast<Index>(a)});
+    keys.push_back(
+        {cell(0), mesh.dim == 3 ? cell(1) : 0, X[axis[mesh.dim - 1]], static_cast<Index>(a)});
   }
   std::sort(keys.begin(), keys.end(), [](const Key& p, const Key& q) {
     return std::tie(p.slab, p.row, p.place, p.node) < std::tie(q.slab, q.row, q.place, q.node);
@@ -63,7 +65,8 @@ Body make_body(const scene::Problem& problem, scene::Mesh mesh) {
 
   body.X.assign(static_cast<std::size_t>(body.n) * body.stride, 0.0);
   for (Index a = 0; a < body.n; ++a) {
-    for (int i = 0; i < body.dim; ++i) body.X[a * body.stride + i] = mesh.nodes[body.node[a]][i];
+    for (int i = 0; i < body.dim; ++i)
+      body.X[a * body.stride + i] = mesh.nodes[body.node[a]][i];
   }
   body.V.assign(body.n, 0.0);
   body.h_min = 1e300;

@@ -1,5 +1,6 @@
 #pragma once
-// The discrete body of a particle method: particles in sweep order with volumes, masses and the triangulation.
+// The discrete body of a particle method: particles in sweep order with volumes, masses and the
+// triangulation.
 
 #include "particle/core/simd.hpp"
 #include "particle/core/triangulation.hpp"
@@ -9,22 +10,24 @@
 
 namespace concord::particle {
 
-/// Particles sorted by slabs of thickness about h along the body's longest axis, rows within a slab, places within a row:
-/// neighbours are near in memory and a plane at a time can be swept. The order follows from the positions alone.
+/// Particles sorted by slabs of thickness about h along the body's longest axis, rows within a
+/// slab, places within a row: neighbours are near in memory and a plane at a time can be swept.
+/// The order follows from the positions alone.
 struct Body {
   int dim = 3;
   int stride = 4;
   Index n = 0;
-  double h = 0;                  ///< mean spacing asked for [m]
-  double h_min = 0;              ///< shortest edge of the triangulation [m]
-  double thickness = 1;          ///< [m], 1 in 3D
-  Column X;                      ///< reference positions, `stride` doubles a particle [m]
-  std::vector<double> V;         ///< V_a = sum |t|/(n+1) over the simplices at a, times thickness [m^3]
-  std::vector<double> m;         ///< rho0 V_a [kg]
-  std::vector<Index> node;       ///< mesh node of each particle
-  std::vector<Index> particle;   ///< particle of each mesh node
-  Triangulation triangulation;   ///< vertices renumbered to particles
-  scene::Mesh mesh;              ///< gmsh's mesh, with groups (node numbers)
+  double h = 0;          ///< mean spacing asked for [m]
+  double h_min = 0;      ///< shortest edge of the triangulation [m]
+  double thickness = 1;  ///< [m], 1 in 3D
+  Column X;              ///< reference positions, `stride` doubles a particle [m]
+  std::vector<double>
+      V;  ///< V_a = sum |t|/(n+1) over the simplices at a, times thickness [m^3]
+  std::vector<double> m;        ///< rho0 V_a [kg]
+  std::vector<Index> node;      ///< mesh node of each particle
+  std::vector<Index> particle;  ///< particle of each mesh node
+  Triangulation triangulation;  ///< vertices renumbered to particles
+  scene::Mesh mesh;             ///< gmsh's mesh, with groups (node numbers)
 
   Vec3 position(Index a) const {
     Vec3 r = Vec3::Zero();
@@ -33,14 +36,15 @@ struct Body {
   }
 };
 
-/// Meshes the geometry at spacing h, perturbs, triangulates and sorts. Throws InputError (geometry cannot be filled).
+/// Meshes the geometry at spacing h, perturbs, triangulates and sorts. Throws InputError
+/// (geometry cannot be filled).
 Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed);
 
 /// The same from a mesh that is there already (tests, benchmarks).
 Body make_body(const scene::Problem& problem, scene::Mesh mesh);
 
-/// Contiguous ranges of particles, the same for every number of threads: block k is [begin[k], begin[k+1]).
-/// About 16384 particles each, at most 16 blocks.
+/// Contiguous ranges of particles, the same for every number of threads: block k is [begin[k],
+/// begin[k+1]). About 16384 particles each, at most 16 blocks.
 std::vector<Index> fixed_blocks(Index n);
 
 }  // namespace concord::particle

@@ -17,15 +17,17 @@ struct PrescribedDof {
   Vec3 normal;      ///< outward unit normal, for conditions that need it
 };
 
-/// Prescribed displacements. Particles lie on the faces: a symmetric plane prescribes the normal component, an antisymmetric
-/// one the tangential components.
+/// Prescribed displacements. Particles lie on the faces: a symmetric plane prescribes the
+/// normal component, an antisymmetric one the tangential components.
 class Constraints {
  public:
-  /// Throws InputError for groups of the wrong kind and where two conditions prescribe different values of one component.
+  /// Throws InputError for groups of the wrong kind and where two conditions prescribe
+  /// different values of one component.
   Constraints(const scene::Problem& problem, const Body& body);
 
   const std::vector<PrescribedDof>& dofs() const { return m_dofs; }
-  /// Whether any prescribed value differs from zero at some time (found by sampling 0, T/2, T and asking the expressions).
+  /// Whether any prescribed value differs from zero at some time (found by sampling 0, T/2, T
+  /// and asking the expressions).
   bool moving() const { return m_moving; }
   double value(const PrescribedDof& dof, double t) const;
   /// Sets the prescribed components of u to their values at t.
@@ -33,7 +35,9 @@ class Constraints {
   /// Zeroes the prescribed components of a column (forces, initial velocity).
   void clear(std::span<double> column) const;
   /// Number of displacement components left free.
-  long unknowns() const { return static_cast<long>(m_body.n) * m_body.dim - static_cast<long>(m_dofs.size()); }
+  long unknowns() const {
+    return static_cast<long>(m_body.n) * m_body.dim - static_cast<long>(m_dofs.size());
+  }
 
  private:
   const scene::Problem& m_problem;
@@ -42,28 +46,34 @@ class Constraints {
   bool m_moving = false;
 };
 
-/// External forces: gravity (21), body force V_b b(X_b, t), and nominal traction, (A_beta / n) T a vertex of each facet, the
-/// lumping with which patch test C is exact (the boundary sums of B_ab are A_beta/n).
+/// External forces: gravity (21), body force V_b b(X_b, t), and nominal traction, (A_beta / n)
+/// T a vertex of each facet, the lumping with which patch test C is exact (the boundary sums of
+/// B_ab are A_beta/n).
 class ExternalLoads {
  public:
   ExternalLoads(const scene::Problem& problem, const Body& body);
 
-  bool none() const { return m_constant_dense.empty() && m_constant.empty() && m_varying.empty() && !m_varying_body; }
+  bool none() const {
+    return m_constant_dense.empty() && m_constant.empty() && m_varying.empty() &&
+           !m_varying_body;
+  }
   bool depend_on_time() const { return !m_varying.empty() || m_varying_body; }
   /// Adds the loads at time t to f.
   void add(double t, std::span<double> f) const {
     add_constant(f);
     add_varying(t, f);
   }
-  /// The part that never changes, and has the potential -f.u; and the part that depends on time.
+  /// The part that never changes, and has the potential -f.u; and the part that depends on
+  /// time.
   void add_constant(std::span<double> f) const;
   void add_varying(double t, std::span<double> f) const;
   bool any_constant() const { return !m_constant_dense.empty() || !m_constant.empty(); }
   /// Particles on which time-dependent loads act, sorted.
   std::vector<Index> varying_particles() const;
-  /// Adds reference area vectors' share of every particle in a group: used for averages. Pairs (particle, area).
-  static std::vector<std::pair<Index, double>> group_areas(const Body& body, const std::string& group,
-                                                           const SourcePosition& where);
+  /// Adds reference area vectors' share of every particle in a group: used for averages. Pairs
+  /// (particle, area).
+  static std::vector<std::pair<Index, double>>
+  group_areas(const Body& body, const std::string& group, const SourcePosition& where);
 
  private:
   struct Entry {
@@ -76,13 +86,14 @@ class ExternalLoads {
 
   const scene::Problem& m_problem;
   const Body& m_body;
-  Column m_constant_dense;                              ///< gravity and constant body force
-  std::vector<std::pair<Index, Vec3>> m_constant;       ///< constant tractions, a particle
+  Column m_constant_dense;                         ///< gravity and constant body force
+  std::vector<std::pair<Index, Vec3>> m_constant;  ///< constant tractions, a particle
   std::vector<Entry> m_varying;
   bool m_varying_body = false;
 };
 
 /// Boundary facets (indices into Triangulation::boundary) whose entity belongs to the group.
-std::vector<Index> group_boundary_facets(const Body& body, const std::string& group, const SourcePosition& where);
+std::vector<Index> group_boundary_facets(const Body& body, const std::string& group,
+                                         const SourcePosition& where);
 
 }  // namespace concord::particle

@@ -1,6 +1,7 @@
 #pragma once
-// What an explicit or static particle solver needs to know of a formulation: its forces, energies and tangent.
-// Virtual dispatch happens once a step; the loops inside know everything at compile time.
+// What an explicit or static particle solver needs to know of a formulation: its forces,
+// energies and tangent. Virtual dispatch happens once a step; the loops inside know everything
+// at compile time.
 
 #include "particle/core/body.hpp"
 #include "particle/core/parallel.hpp"
@@ -21,12 +22,14 @@ struct BadState {
 
 /// Stored energies [J].
 struct Energies {
-  double internal = 0;       ///< sum V_a U(F_a), Eq. (14)
-  double stabilisation = 0;  ///< contact energy (15) or penalty energy; 0 where the stabilisation has no potential
+  double internal = 0;  ///< sum V_a U(F_a), Eq. (14)
+  double stabilisation =
+      0;  ///< contact energy (15) or penalty energy; 0 where the stabilisation has no potential
 };
 
-/// Forces of one formulation on one body. State is the displacement u = x - X (and velocity v), not the position: H = F - I
-/// then has no cancellation, and small strains keep their relative accuracy.
+/// Forces of one formulation on one body. State is the displacement u = x - X (and velocity v),
+/// not the position: H = F - I then has no cancellation, and small strains keep their relative
+/// accuracy.
 class ForceModel {
  public:
   explicit ForceModel(const Body& body) : m_body(body) {}
@@ -36,15 +39,17 @@ class ForceModel {
 
   const Body& body() const { return m_body; }
 
-  /// f = internal and stabilisation force [N], overwritten; columns of `stride` doubles a particle. `v` is read only by
-  /// models with viscosity. No allocation. Throws BadState for det F <= 0 or NaN (lowest particle number).
+  /// f = internal and stabilisation force [N], overwritten; columns of `stride` doubles a
+  /// particle. `v` is read only by models with viscosity. No allocation. Throws BadState for
+  /// det F <= 0 or NaN (lowest particle number).
   virtual void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
                       const Executor& executor) = 0;
 
   /// Energies at displacement u.
   virtual Energies energies(std::span<const double> u, const Executor& executor) = 0;
 
-  /// Displacement gradients H_a = F_a - I at u, one a particle; in plane stress H_33 follows from P_33 = 0.
+  /// Displacement gradients H_a = F_a - I at u, one a particle; in plane stress H_33 follows
+  /// from P_33 = 0.
   virtual void gradients(std::span<const double> u, std::span<Mat3> H) = 0;
 
   /// K = -df/du (without viscosity) over dim*n unknowns (particle*dim + component) at u [N/m].
@@ -56,10 +61,12 @@ class ForceModel {
   /// Whether forces depend on velocity (artificial viscosity).
   virtual bool viscous() const { return false; }
 
-  /// Largest viscous damping ratio of the highest mode, for the stable step: dt <= (2/w)(sqrt(1+z^2) - z). 0 without viscosity.
+  /// Largest viscous damping ratio of the highest mode, for the stable step: dt <=
+  /// (2/w)(sqrt(1+z^2) - z). 0 without viscosity.
   virtual double viscous_damping_ratio(double omega_max) const { return 0 * omega_max; }
 
-  /// Pair interactions that one force evaluation visits (bonds, or directed neighbours), for cost tables.
+  /// Pair interactions that one force evaluation visits (bonds, or directed neighbours), for
+  /// cost tables.
   virtual std::size_t interactions() const = 0;
 
  protected:

@@ -6,7 +6,8 @@
 namespace concord::particle {
 
 ParticleField::ParticleField(const Body& body, std::vector<Vec3> u, std::vector<Mat3> H)
-    : m_dim(body.dim), m_simplices(body.triangulation.simplices), m_u(std::move(u)), m_H(std::move(H)) {
+    : m_dim(body.dim), m_simplices(body.triangulation.simplices), m_u(std::move(u)),
+      m_H(std::move(H)) {
   Vec3 high = Vec3::Constant(-1e300);
   m_low = Vec3::Constant(1e300);
   for (Index a = 0; a < body.n; ++a) {
@@ -15,7 +16,8 @@ ParticleField::ParticleField(const Body& body, std::vector<Vec3> u, std::vector<
     high = high.cwiseMax(m_X.back());
   }
   m_cell = body.h;
-  for (int i = 0; i < m_dim; ++i) m_cells[i] = std::max(1, static_cast<int>(std::ceil((high[i] - m_low[i]) / m_cell)));
+  for (int i = 0; i < m_dim; ++i)
+    m_cells[i] = std::max(1, static_cast<int>(std::ceil((high[i] - m_low[i]) / m_cell)));
   const std::size_t nv = m_dim + 1, count = m_simplices.size() / nv;
   const auto grid_cell = [&](double x, int i) {
     return std::clamp(static_cast<int>((x - m_low[i]) / m_cell), 0, m_cells[i] - 1);
@@ -33,19 +35,23 @@ ParticleField::ParticleField(const Body& body, std::vector<Vec3> u, std::vector<
     }
     for (int z = lo[2]; z <= hi[2]; ++z) {
       for (int y = lo[1]; y <= hi[1]; ++y) {
-        for (int x = lo[0]; x <= hi[0]; ++x) f((static_cast<std::size_t>(z) * m_cells[1] + y) * m_cells[0] + x);
+        for (int x = lo[0]; x <= hi[0]; ++x)
+          f((static_cast<std::size_t>(z) * m_cells[1] + y) * m_cells[0] + x);
       }
     }
   };
   m_begin.assign(static_cast<std::size_t>(m_cells[0]) * m_cells[1] * m_cells[2] + 1, 0);
-  for (std::size_t s = 0; s < count; ++s) for_cells(s, [&](std::size_t c) { ++m_begin[c + 1]; });
+  for (std::size_t s = 0; s < count; ++s)
+    for_cells(s, [&](std::size_t c) { ++m_begin[c + 1]; });
   for (std::size_t c = 1; c < m_begin.size(); ++c) m_begin[c] += m_begin[c - 1];
   m_inside.resize(m_begin.back());
   std::vector<Index> next(m_begin.begin(), m_begin.end() - 1);
-  for (std::size_t s = 0; s < count; ++s) for_cells(s, [&](std::size_t c) { m_inside[next[c]++] = static_cast<Index>(s); });
+  for (std::size_t s = 0; s < count; ++s)
+    for_cells(s, [&](std::size_t c) { m_inside[next[c]++] = static_cast<Index>(s); });
 }
 
-void ParticleField::weights(std::size_t simplex, const Vec3& X, std::array<double, 4>& w) const {
+void ParticleField::weights(std::size_t simplex, const Vec3& X,
+                            std::array<double, 4>& w) const {
   const Index* v = &m_simplices[simplex * (m_dim + 1)];
   std::array<Vec3, 4> P, g;
   for (int k = 0; k <= m_dim; ++k) P[k] = m_X[v[k]];
@@ -57,7 +63,8 @@ void ParticleField::weights(std::size_t simplex, const Vec3& X, std::array<doubl
 
 std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const {
   std::array<int, 3> c{0, 0, 0};
-  for (int i = 0; i < m_dim; ++i) c[i] = std::clamp(static_cast<int>((X[i] - m_low[i]) / m_cell), 0, m_cells[i] - 1);
+  for (int i = 0; i < m_dim; ++i)
+    c[i] = std::clamp(static_cast<int>((X[i] - m_low[i]) / m_cell), 0, m_cells[i] - 1);
   std::size_t best = 0;
   double best_least = -1e300;
   const auto try_cell = [&](int x, int y, int z) {
@@ -66,35 +73,41 @@ std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const
       std::array<double, 4> trial{};
       weights(m_inside[k], X, trial);
       const double least = *std::min_element(trial.begin(), trial.begin() + m_dim + 1);
-      if (std::isfinite(trial[0] + trial[1] + trial[2] + trial[3]) && least > best_least) best_least = least, best = m_inside[k], w = trial;
+      if (std::isfinite(trial[0] + trial[1] + trial[2] + trial[3]) && least > best_least)
+        best_least = least, best = m_inside[k], w = trial;
     }
   };
-  // The cell at X holds the simplex, unless X lies outside: then look further out, ring by ring.
+  // The cell at X holds the simplex, unless X lies outside: then look further out, ring by
+  // ring.
   const int widest = std::max({m_cells[0], m_cells[1], m_cells[2]});
   for (int ring = 0; ring <= widest && best_least == -1e300; ++ring) {
     for (int z = std::max(0, c[2] - ring); z <= std::min(m_cells[2] - 1, c[2] + ring); ++z) {
       for (int y = std::max(0, c[1] - ring); y <= std::min(m_cells[1] - 1, c[1] + ring); ++y) {
-        for (int x = std::max(0, c[0] - ring); x <= std::min(m_cells[0] - 1, c[0] + ring); ++x) try_cell(x, y, z);
+        for (int x = std::max(0, c[0] - ring); x <= std::min(m_cells[0] - 1, c[0] + ring); ++x)
+          try_cell(x, y, z);
       }
     }
   }
   return best;
 }
 
-void ParticleField::evaluate(std::span<const Vec3> X, std::span<Vec3> u, std::span<Mat3> gradient) const {
+void ParticleField::evaluate(std::span<const Vec3> X, std::span<Vec3> u,
+                             std::span<Mat3> gradient) const {
   std::array<double, 4> w{};
   std::array<Vec3, 4> P, g;
   for (std::size_t q = 0; q < X.size(); ++q) {
     const std::size_t s = locate(X[q], w);
     const Index* v = &m_simplices[s * (m_dim + 1)];
     u[q].setZero();
-    for (int k = 0; k <= m_dim; ++k) u[q] += w[k] * (m_u[v[k]] + 0.5 * m_H[v[k]] * (X[q] - m_X[v[k]]));
+    for (int k = 0; k <= m_dim; ++k)
+      u[q] += w[k] * (m_u[v[k]] + 0.5 * m_H[v[k]] * (X[q] - m_X[v[k]]));
     if (gradient.empty()) continue;
     for (int k = 0; k <= m_dim; ++k) P[k] = m_X[v[k]];
     shape_gradients(m_dim, P, g);
     gradient[q].setZero();
     for (int k = 0; k <= m_dim; ++k) {
-      gradient[q] += (m_u[v[k]] + 0.5 * m_H[v[k]] * (X[q] - P[k])) * g[k].transpose() + 0.5 * w[k] * m_H[v[k]];
+      gradient[q] += (m_u[v[k]] + 0.5 * m_H[v[k]] * (X[q] - P[k])) * g[k].transpose() +
+                     0.5 * w[k] * m_H[v[k]];
     }
   }
 }

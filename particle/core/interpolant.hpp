@@ -8,14 +8,16 @@
 
 namespace concord::particle {
 
-/// u(X) = sum_i w_i(X) [u_i + H_i (X - X_i) / 2] over the vertices of the simplex at X, w_i its linear shape functions.
-/// With exact H_i it reproduces quadratic fields: for quadratic u the bracket is u(X) - (grad u(X)) (X - X_i)/2, and the
-/// sum over w_i of (X - X_i) vanishes. The particles' own gradients are thus part of the answer that is judged, and the
-/// interpolation adds no second-order error where they are accurate. The gradient is that of this function.
+/// u(X) = sum_i w_i(X) [u_i + H_i (X - X_i) / 2] over the vertices of the simplex at X, w_i its
+/// linear shape functions. With exact H_i it reproduces quadratic fields: for quadratic u the
+/// bracket is u(X) - (grad u(X)) (X - X_i)/2, and the sum over w_i of (X - X_i) vanishes. The
+/// particles' own gradients are thus part of the answer that is judged, and the interpolation
+/// adds no second-order error where they are accurate. The gradient is that of this function.
 class ParticleField final : public scene::Field {
  public:
   ParticleField(const Body& body, std::vector<Vec3> u, std::vector<Mat3> H);
-  void evaluate(std::span<const Vec3> X, std::span<Vec3> u, std::span<Mat3> gradient) const override;
+  void evaluate(std::span<const Vec3> X, std::span<Vec3> u,
+                std::span<Mat3> gradient) const override;
 
  private:
   std::size_t locate(const Vec3& X, std::array<double, 4>& w) const;

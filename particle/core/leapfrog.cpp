@@ -12,27 +12,29 @@ using Clock = std::chrono::steady_clock;
 
 /// v = keep v + scale f/m, one vector a particle.
 template <int Dim>
-CONCORD_CLONES void kick_range(std::size_t begin, std::size_t end, double keep, double scale, const double* inverse_mass,
-                               const double* f, double* v) {
+CONCORD_CLONES void kick_range(std::size_t begin, std::size_t end, double keep, double scale,
+                               const double* inverse_mass, const double* f, double* v) {
   constexpr int S = Lanes<Dim>::stride;
   for (std::size_t a = begin; a < end; ++a) {
-    const Vec<Dim> force = load<Vec<Dim>>(f + a * S) * broadcast(scale * inverse_mass[a], Vec<Dim>{});
+    const Vec<Dim> force =
+        load<Vec<Dim>>(f + a * S) * broadcast(scale * inverse_mass[a], Vec<Dim>{});
     store(v + a * S, load<Vec<Dim>>(v + a * S) * broadcast(keep, Vec<Dim>{}) + force);
   }
 }
 
-CONCORD_CLONES void drift_range(std::size_t begin, std::size_t end, double dt, const double* __restrict v,
-                                double* __restrict u) {
+CONCORD_CLONES void drift_range(std::size_t begin, std::size_t end, double dt,
+                                const double* __restrict v, double* __restrict u) {
 #pragma omp simd
   for (std::size_t k = begin; k < end; ++k) u[k] += dt * v[k];
 }
 
 }  // namespace
 
-Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
-                   const ExternalLoads& loads, const Executor& executor, double ramp_time)
-    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads), m_executor(executor),
-      m_ramp(ramp_time), m_work(model.body(), constraints, loads) {
+Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model,
+                   const Constraints& constraints, const ExternalLoads& loads,
+                   const Executor& executor, double ramp_time)
+    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads),
+      m_executor(executor), m_ramp(ramp_time), m_work(model.body(), constraints, loads) {
   const Body& body = model.body();
   m_u.assign(body.X.size(), 0.0);
   m_v = m_f = m_u;
@@ -57,11 +59,14 @@ void Leapfrog::evaluate() {
 }
 
 void Leapfrog::kick(double dt, double damping) {
-  const double keep = (1 - 0.5 * damping * dt) / (1 + 0.5 * damping * dt), scale = dt / (1 + 0.5 * damping * dt);
+  const double keep = (1 - 0.5 * damping * dt) / (1 + 0.5 * damping * dt),
+               scale = dt / (1 + 0.5 * damping * dt);
   const Body& body = m_model.body();
   m_executor.for_pieces(body.n, [&](std::size_t begin, std::size_t end) {
-    if (body.dim == 3) kick_range<3>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
-    else kick_range<2>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
+    if (body.dim == 3)
+      kick_range<3>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
+    else
+      kick_range<2>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
   });
   m_constraints.clear(m_v);
 }
@@ -90,7 +95,8 @@ double Leapfrog::critical_step(double dt_factor) {
 }
 
 double Leapfrog::largest_gradient() const {
-  // A bound that needs no tensors: the largest relative displacement over a bond of the triangulation.
+  // A bound that needs no tensors: the largest relative displacement over a bond of the
+  // triangulation.
   const Body& body = m_model.body();
   const Triangulation& t = body.triangulation;
   const int nv = t.dim + 1;
@@ -100,7 +106,8 @@ double Leapfrog::largest_gradient() const {
     for (int k = 1; k < nv; ++k) {
       double du = 0, dX = 0;
       for (int i = 0; i < t.dim; ++i) {
-        const std::size_t p = static_cast<std::size_t>(v[k]) * body.stride + i, q = static_cast<std::size_t>(v[0]) * body.stride + i;
+        const std::size_t p = static_cast<std::size_t>(v[k]) * body.stride + i,
+                          q = static_cast<std::size_t>(v[0]) * body.stride + i;
         du += (m_u[p] - m_u[q]) * (m_u[p] - m_u[q]);
         dX += (body.X[p] - body.X[q]) * (body.X[p] - body.X[q]);
       }
@@ -121,7 +128,8 @@ State Leapfrog::state() {
     }
   }
   m_constraints.clear(m_acceleration);
-  for (std::size_t k = 0; k < m_v.size(); ++k) m_v_full[k] += 0.5 * m_dt_last * m_acceleration[k];
+  for (std::size_t k = 0; k < m_v.size(); ++k)
+    m_v_full[k] += 0.5 * m_dt_last * m_acceleration[k];
   State s;
   s.t = m_problem.is_static ? load_time() : m_t;
   s.u = m_u;
@@ -145,7 +153,8 @@ bool Leapfrog::settled(double fraction) {
   return residual <= fraction * fraction * scale;
 }
 
-void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome) {
+void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
+                   LeapfrogOutcome& outcome) {
   m_damping = options.damping;
   const auto fail = [&](const BadState& bad) {
     outcome.t = m_t;
@@ -162,7 +171,9 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogO
     recorder.frame(state());
     long rows = 1, frames = 1;
     auto begin = Clock::now();
-    const auto pause = [&] { outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count(); };
+    const auto pause = [&] {
+      outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count();
+    };
     const double end = options.end_time;
     for (outcome.steps = 0; m_t < end;) {
       const double left = end - m_t;
@@ -177,13 +188,18 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogO
       outcome.t = m_t;
       outcome.dt = step;
       const bool last = m_t >= end;
-      const bool row_due = last || (options.history_rows > 0 && m_t >= rows * end / options.history_rows);
-      const bool frame_due = last || (options.frames > 0 && m_t >= frames * end / options.frames);
+      const bool row_due =
+          last || (options.history_rows > 0 && m_t >= rows * end / options.history_rows);
+      const bool frame_due =
+          last || (options.frames > 0 && m_t >= frames * end / options.frames);
       if (row_due || frame_due) {
         pause();
-        if (row_due) recorder.row(state()), rows = static_cast<long>(m_t / end * options.history_rows) + 1;
-        if (frame_due) recorder.frame(state()), frames = static_cast<long>(m_t / end * options.frames) + 1;
-        if (options.progress) options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
+        if (row_due)
+          recorder.row(state()), rows = static_cast<long>(m_t / end * options.history_rows) + 1;
+        if (frame_due)
+          recorder.frame(state()), frames = static_cast<long>(m_t / end * options.frames) + 1;
+        if (options.progress)
+          options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
         begin = Clock::now();
       }
       if (options.dt_fixed <= 0 && outcome.steps % 64 == 0) {
@@ -193,7 +209,8 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogO
           gradient = now;
         }
       }
-      if (options.stop_at_residual > 0 && outcome.steps % 64 == 0 && m_t >= m_ramp && settled(options.stop_at_residual)) {
+      if (options.stop_at_residual > 0 && outcome.steps % 64 == 0 && m_t >= m_ramp &&
+          settled(options.stop_at_residual)) {
         outcome.settled = true;
         break;
       }

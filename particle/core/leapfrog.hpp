@@ -10,39 +10,46 @@
 namespace concord::particle {
 
 struct LeapfrogOptions {
-  double end_time = 0;     ///< [s]
-  double dt_factor = 0.8;  ///< time step over the critical one, 2/omega_max (reduced for viscosity)
-  double dt_fixed = 0;     ///< > 0: this step instead [s]
-  double damping = 0;      ///< mass-proportional damping rate c [1/s]: force -c m v
-  int frames = 0;          ///< field frames over the run, besides the first
-  int history_rows = 0;    ///< history rows over the run, besides the first
-  /// omega_max is asked for again when the largest |H| of any particle changed by this much since the last estimate.
+  double end_time = 0;  ///< [s]
+  double dt_factor =
+      0.8;  ///< time step over the critical one, 2/omega_max (reduced for viscosity)
+  double dt_fixed = 0;   ///< > 0: this step instead [s]
+  double damping = 0;    ///< mass-proportional damping rate c [1/s]: force -c m v
+  int frames = 0;        ///< field frames over the run, besides the first
+  int history_rows = 0;  ///< history rows over the run, besides the first
+  /// omega_max is asked for again when the largest |H| of any particle changed by this much
+  /// since the last estimate.
   double reestimate_at = 0.05;
   std::function<void(double, const std::string&)> progress;
-  /// > 0: loads and prescribed displacements are those of min(t / ramp_time, 1): static problems by damped dynamics.
+  /// > 0: loads and prescribed displacements are those of min(t / ramp_time, 1): static
+  /// problems by damped dynamics.
   double ramp_time = 0;
-  /// > 0: stop after the ramp when the unbalanced force falls below this times the largest internal force (both norms).
+  /// > 0: stop after the ramp when the unbalanced force falls below this times the largest
+  /// internal force (both norms).
   double stop_at_residual = 0;
 };
 
 struct LeapfrogOutcome {
   long steps = 0;
-  double dt = 0;       ///< last step [s]
-  double t = 0;        ///< time reached [s]
-  double loop_s = 0;   ///< wall time of the loop without output
+  double dt = 0;         ///< last step [s]
+  double t = 0;          ///< time reached [s]
+  double loop_s = 0;     ///< wall time of the loop without output
   bool settled = false;  ///< stopped by stop_at_residual
 };
 
-/// v_{n+1/2} = v_{n-1/2} + dt f(u_n)/m, u_{n+1} = u_n + dt v_{n+1/2}: second order, symplectic for constant dt. With damping c,
-/// v_{n+1/2} = ((1 - c dt/2) v_{n-1/2} + dt f/m) / (1 + c dt/2). Velocities reported are those at full steps.
+/// v_{n+1/2} = v_{n-1/2} + dt f(u_n)/m, u_{n+1} = u_n + dt v_{n+1/2}: second order, symplectic
+/// for constant dt. With damping c, v_{n+1/2} = ((1 - c dt/2) v_{n-1/2} + dt f/m) / (1 + c
+/// dt/2). Velocities reported are those at full steps.
 class Leapfrog {
  public:
-  /// Starts from the problem's initial displacement and velocity. References must outlive the object.
-  Leapfrog(const scene::Problem& problem, ForceModel& model, const Constraints& constraints, const ExternalLoads& loads,
-           const Executor& executor, double ramp_time = 0);
+  /// Starts from the problem's initial displacement and velocity. References must outlive the
+  /// object.
+  Leapfrog(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
+           const ExternalLoads& loads, const Executor& executor, double ramp_time = 0);
 
-  /// Runs to the end time, writing to `recorder`. Throws SolveError (det F <= 0, NaN) with step, time and particle, and
-  /// Interrupted, both after writing the last good state. `outcome` is current whenever it throws.
+  /// Runs to the end time, writing to `recorder`. Throws SolveError (det F <= 0, NaN) with
+  /// step, time and particle, and Interrupted, both after writing the last good state.
+  /// `outcome` is current whenever it throws.
   void run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
 
   /// The state at the last force evaluation, velocity brought to the same instant.
@@ -64,7 +71,7 @@ class Leapfrog {
   const Executor& m_executor;
   double m_ramp;
   std::vector<double> m_inverse_mass;
-  Column m_u, m_v, m_f;            ///< displacement, half-step velocity, total force on all components
+  Column m_u, m_v, m_f;  ///< displacement, half-step velocity, total force on all components
   Column m_v_full, m_acceleration;  ///< for output
   ExternalWork m_work;
   double m_t = 0, m_dt_last = 0, m_damping = 0;

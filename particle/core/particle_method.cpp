@@ -14,7 +14,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 /// One run, so that what was reached can be told from wherever it ends.
 struct Run {
@@ -31,7 +33,8 @@ struct Run {
 
   void finish(const State& state) {
     result.t_end = state.t;
-    for (const auto& [name, value] : recorder.quantities(state)) result.quantities[name] = value;
+    for (const auto& [name, value] : recorder.quantities(state))
+      result.quantities[name] = value;
     result.samples = recorder.samples(state);
     std::vector<Mat3> H;
     for (const Mat3& F : result.samples.F) H.push_back(F - Mat3::Identity());
@@ -77,7 +80,8 @@ struct Run {
       result.dt = outcome.dt;
       result.wall_s = outcome.loop_s;
       finish(integrator.state());
-      if (!problem.is_static) recorder.add_invariants(result, options.damping > 0 || model.viscous());
+      if (!problem.is_static)
+        recorder.add_invariants(result, options.damping > 0 || model.viscous());
     };
     try {
       integrator.run(options, recorder, outcome);
@@ -87,16 +91,19 @@ struct Run {
     }
     tell();
     if (problem.is_static && !outcome.settled) {
-      throw SolveError("equilibrium", outcome.steps, outcome.t, -1,
-                       "the damped motion did not settle to the asked residual; more time: settle_time");
+      throw SolveError(
+          "equilibrium", outcome.steps, outcome.t, -1,
+          "the damped motion did not settle to the asked residual; more time: settle_time");
     }
   }
 
-  /// Damped dynamics for a static problem: loads ramp up over a few periods of the body's slowest wave, then the rest is damped
-  /// out at about the critical rate of that mode, c = 2 pi c_s / (2 L) per radian.
+  /// Damped dynamics for a static problem: loads ramp up over a few periods of the body's
+  /// slowest wave, then the rest is damped out at about the critical rate of that mode, c = 2
+  /// pi c_s / (2 L) per radian.
   void relaxation(LeapfrogOptions& options) const {
     double size = 0;
-    for (Index a = 0; a < body.n; ++a) size = std::max(size, (body.position(a) - body.position(0)).norm());
+    for (Index a = 0; a < body.n; ++a)
+      size = std::max(size, (body.position(a) - body.position(0)).norm());
     const double period = 4 * size / problem.material.shear_wave_speed();
     options.ramp_time = 2 * period;
     options.end_time = settings.number("settle_time") * period;
@@ -110,14 +117,24 @@ struct Run {
 
 const std::vector<scene::ParameterInfo>& solver_parameters() {
   static const std::vector<scene::ParameterInfo> table{
-      {"solver", "1", "auto", "auto | explicit | static",
-       "auto: Newton for static scenes, leapfrog for dynamic ones; explicit on a static scene: damped dynamics", -1e300, 1e300,
+      {"solver",
+       "1",
+       "auto",
+       "auto | explicit | static",
+       "auto: Newton for static scenes, leapfrog for dynamic ones; explicit on a static scene: "
+       "damped dynamics",
+       -1e300,
+       1e300,
        {"auto", "explicit", "static"}},
       {"dt_factor", "1", "0.8", "(0, 1]",
-       "time step over the critical one 2/omega_max, omega_max by Lanczos iteration on the linearised forces", 1e-6, 1},
+       "time step over the critical one 2/omega_max, omega_max by Lanczos iteration on the "
+       "linearised forces",
+       1e-6, 1},
       {"dt", "s", "0", ">= 0", "fixed time step; 0: from dt_factor", 0},
-      {"damping", "1/s", "0", ">= 0", "mass-proportional damping rate c: force -c m v (0 on a static scene: critical)", 0},
-      {"settle_time", "1", "60", "> 2", "damped dynamics: longest time, in periods 4 L/c_s of the body", 2},
+      {"damping", "1/s", "0", ">= 0",
+       "mass-proportional damping rate c: force -c m v (0 on a static scene: critical)", 0},
+      {"settle_time", "1", "60", "> 2",
+       "damped dynamics: longest time, in periods 4 L/c_s of the body", 2},
       {"tolerance", "1", "1e-12", "[1e-15, 1e-2]",
        "statics: unbalanced force over internal force at convergence (norms)", 1e-15, 1e-2},
   };
@@ -129,7 +146,8 @@ ParticleMethod::ParticleMethod(scene::MethodInfo own) : m_info(std::move(own)) {
   m_info.parameters.insert(m_info.parameters.end(), shared.begin(), shared.end());
 }
 
-void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request, scene::Result& result) const {
+void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
+                         scene::Result& result) const {
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
@@ -143,7 +161,8 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   result.unknowns = constraints.unknowns();
   result.threads = executor.threads();
   result.setup_s = seconds_since(begin);
-  Run run{problem, request, settings, body, *model, constraints, loads, executor, recorder, result};
+  Run run{problem,     request, settings, body,     *model,
+          constraints, loads,   executor, recorder, result};
   const std::string& solver = settings.word("solver");
   if (solver == "static" && !problem.is_static) {
     throw InputError({problem.file.string(), 0, 0}, m_info.name + ".solver", "static",
@@ -151,7 +170,8 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   }
   if (problem.is_static && solver != "explicit") {
     if (model->viscous()) {
-      throw InputError({problem.file.string(), 0, 0}, m_info.name, "artificial viscosity on a static solve",
+      throw InputError({problem.file.string(), 0, 0}, m_info.name,
+                       "artificial viscosity on a static solve",
                        "viscosity 0, or solver = explicit (damped dynamics)");
     }
     run.statics();

@@ -1,5 +1,6 @@
 #pragma once
-// What all particle methods share of a run: body, boundary data, integrator or static solver, histories, frames, result.
+// What all particle methods share of a run: body, boundary data, integrator or static solver,
+// histories, frames, result.
 
 #include "particle/core/force_model.hpp"
 #include "scene/method.hpp"
@@ -8,18 +9,23 @@
 
 namespace concord::particle {
 
-/// A particle formulation as a Method. It says what it is and makes its force model; the rest is the same for all.
-/// To add a formulation: derive, implement make_model, and register with scene::RegisterMethod.
+/// A particle formulation as a Method. It says what it is and makes its force model; the rest
+/// is the same for all. To add a formulation: derive, implement make_model, and register with
+/// scene::RegisterMethod.
 class ParticleMethod : public scene::Method {
  public:
-  /// `own`: name, title, source and the formulation's own parameters; those of the solvers are appended.
+  /// `own`: name, title, source and the formulation's own parameters; those of the solvers are
+  /// appended.
   explicit ParticleMethod(scene::MethodInfo own);
   const scene::MethodInfo& info() const final { return m_info; }
-  void run(const scene::Problem& problem, const scene::RunRequest& request, scene::Result& result) const final;
+  void run(const scene::Problem& problem, const scene::RunRequest& request,
+           scene::Result& result) const final;
 
   /// Forces of this formulation on `body`. Throws InputError for settings that it cannot serve.
-  virtual std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
-                                                 const scene::Settings& settings, const Executor& executor) const = 0;
+  virtual std::unique_ptr<ForceModel> make_model(const Body& body,
+                                                 const scene::Problem& problem,
+                                                 const scene::Settings& settings,
+                                                 const Executor& executor) const = 0;
 
  private:
   scene::MethodInfo m_info;

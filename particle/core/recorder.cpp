@@ -16,9 +16,12 @@ const std::array<const char*, 3> axes{"x", "y", "z"};
 std::string history_name(const scene::Quantity& q, const std::string& entry) {
   switch (q.kind) {
     case scene::QuantityKind::point:
-    case scene::QuantityKind::average: return entry + "_m";
-    case scene::QuantityKind::reaction: return entry + "_N";
-    case scene::QuantityKind::maximum: break;
+    case scene::QuantityKind::average:
+      return entry + "_m";
+    case scene::QuantityKind::reaction:
+      return entry + "_N";
+    case scene::QuantityKind::maximum:
+      break;
   }
   if (q.field == "velocity") return entry + "_m_s";
   if (q.field == "von_mises" || q.field == "pressure") return entry + "_Pa";
@@ -27,8 +30,9 @@ std::string history_name(const scene::Quantity& q, const std::string& entry) {
 
 }  // namespace
 
-Recorder::Recorder(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
-                   const Executor& executor, const std::filesystem::path& folder, bool frames)
+Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
+                   const Constraints& constraints, const Executor& executor,
+                   const std::filesystem::path& folder, bool frames)
     : m_problem(problem), m_model(model), m_constraints(constraints), m_executor(executor),
       m_law(problem.material, problem.dimension),
       m_free(constraints.dofs().empty() && ExternalLoads(problem, model.body()).none()) {
@@ -45,14 +49,17 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model, const Const
   const auto entries = quantities(zero);
   for (const scene::Quantity& q : problem.quantities) {
     const std::size_t count = q.kind == scene::QuantityKind::maximum ? 1 : body.dim;
-    for (std::size_t i = 0; i < count; ++i) columns.push_back(history_name(q, entries[k++].first));
+    for (std::size_t i = 0; i < count; ++i)
+      columns.push_back(history_name(q, entries[k++].first));
   }
-  for (const char* name : {"kinetic_energy_J", "internal_energy_J", "stabilisation_energy_J", "external_work_J",
-                           "energy_balance_J"}) {
+  for (const char* name : {"kinetic_energy_J", "internal_energy_J", "stabilisation_energy_J",
+                           "external_work_J", "energy_balance_J"}) {
     columns.emplace_back(name);
   }
-  for (const char* axis : axes) columns.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
-  for (const char* axis : axes) columns.push_back(fmt::format("angular_momentum_{}_kg_m2_s", axis));
+  for (const char* axis : axes)
+    columns.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
+  for (const char* axis : axes)
+    columns.push_back(fmt::format("angular_momentum_{}_kg_m2_s", axis));
   m_history = scene::HistoryWriter(folder / "history.csv", columns);
   if (!frames) return;
   m_frames = scene::FrameWriter(folder);
@@ -62,7 +69,8 @@ Vec3 Recorder::at(std::span<const double> column, Index a) const {
   Vec3 r = Vec3::Zero();
   if (column.empty()) return r;
   const Body& body = m_model.body();
-  for (int i = 0; i < body.dim; ++i) r[i] = column[static_cast<std::size_t>(a) * body.stride + i];
+  for (int i = 0; i < body.dim; ++i)
+    r[i] = column[static_cast<std::size_t>(a) * body.stride + i];
   return r;
 }
 
@@ -88,7 +96,8 @@ void Recorder::row(const State& state) {
   const Balance b = balance(state);
   if (!m_any) m_first = b;
   m_any = true;
-  m_largest_energy = std::max(m_largest_energy, b.kinetic + b.internal + b.stabilisation + std::abs(b.external_work));
+  m_largest_energy = std::max(m_largest_energy, b.kinetic + b.internal + b.stabilisation +
+                                                    std::abs(b.external_work));
   m_energy_change = std::max(m_energy_change, std::abs(b.total() - m_first.total()));
   m_linear_change = std::max(m_linear_change, (b.linear - m_first.linear).norm());
   m_angular_change = std::max(m_angular_change, (b.angular - m_first.angular).norm());
@@ -97,7 +106,8 @@ void Recorder::row(const State& state) {
   if (!m_history.active()) return;
   std::vector<double> values{state.t};
   for (const auto& [name, value] : quantities(state)) values.push_back(value);
-  for (const double e : {b.kinetic, b.internal, b.stabilisation, b.external_work, b.total()}) values.push_back(e);
+  for (const double e : {b.kinetic, b.internal, b.stabilisation, b.external_work, b.total()})
+    values.push_back(e);
   for (int i = 0; i < 3; ++i) values.push_back(b.linear[i]);
   for (int i = 0; i < 3; ++i) values.push_back(b.angular[i]);
   m_history.append(values);
@@ -117,10 +127,15 @@ std::vector<double> Recorder::values(const std::string& field, const State& stat
   for (const PrescribedDof& dof : m_constraints.dofs()) prescribed[dof.particle] = 1;
   const bool all = std::count(prescribed.begin(), prescribed.end(), 0) == 0;
   for (Index a = 0; a < body.n; ++a) {
-    if (field == "displacement") result[a] = at(state.u, a).norm();
-    else if (field == "velocity") result[a] = at(state.v, a).norm();
-    else if (field == "unbalanced_force") result[a] = prescribed[a] && !all ? 0.0 : at(state.unbalanced, a).norm();
-    else result[a] = (at(state.u, a) - (*m_problem.exact_displacement)(body.position(a), state.t)).norm();
+    if (field == "displacement")
+      result[a] = at(state.u, a).norm();
+    else if (field == "velocity")
+      result[a] = at(state.v, a).norm();
+    else if (field == "unbalanced_force")
+      result[a] = prescribed[a] && !all ? 0.0 : at(state.unbalanced, a).norm();
+    else
+      result[a] =
+          (at(state.u, a) - (*m_problem.exact_displacement)(body.position(a), state.t)).norm();
   }
   return result;
 }
@@ -130,7 +145,8 @@ double Recorder::maximum(const scene::Quantity& q, const State& state) {
   const std::vector<double> field = values(q.field, state);
   std::vector<char> inside(body.n, q.group.empty() ? 1 : 0);
   if (!q.group.empty()) {
-    for (const Index node : body.mesh.group_nodes(q.group, q.where)) inside[body.particle[node]] = 1;
+    for (const Index node : body.mesh.group_nodes(q.group, q.where))
+      inside[body.particle[node]] = 1;
   }
   double largest = -1e300;
   for (Index a = 0; a < body.n; ++a) {
@@ -150,8 +166,9 @@ std::vector<std::pair<std::string, double>> Recorder::quantities(const State& st
   for (const scene::Quantity& q : m_problem.quantities) {
     switch (q.kind) {
       case scene::QuantityKind::point: {
-        // The particle there if there is one; else the linear combination over the nearest simplex is left to the field:
-        // probes between particles take the nearest particle's first-order expansion.
+        // The particle there if there is one; else the linear combination over the nearest
+        // simplex is left to the field: probes between particles take the nearest particle's
+        // first-order expansion.
         Index nearest = 0;
         double distance = 1e300;
         for (Index a = 0; a < body.n; ++a) {
@@ -178,25 +195,31 @@ std::vector<std::pair<std::string, double>> Recorder::quantities(const State& st
         break;
       }
       case scene::QuantityKind::reaction: {
-        // The constraint force that keeps the group moving as prescribed: R = m a - f on prescribed components.
+        // The constraint force that keeps the group moving as prescribed: R = m a - f on
+        // prescribed components.
         std::vector<char> inside(body.n, 0);
-        for (const Index node : body.mesh.group_nodes(q.group, q.where)) inside[body.particle[node]] = 1;
+        for (const Index node : body.mesh.group_nodes(q.group, q.where))
+          inside[body.particle[node]] = 1;
         Vec3 R = Vec3::Zero();
         for (const PrescribedDof& dof : m_constraints.dofs()) {
           if (!inside[dof.particle]) continue;
           R[dof.component] -= at(state.unbalanced, dof.particle)[dof.component];
-          R[dof.component] += body.m[dof.particle] * at(state.acceleration, dof.particle)[dof.component];
+          R[dof.component] +=
+              body.m[dof.particle] * at(state.acceleration, dof.particle)[dof.component];
         }
         add_vector(q.name, R);
         break;
       }
-      case scene::QuantityKind::maximum: result.emplace_back(q.name, maximum(q, state)); break;
+      case scene::QuantityKind::maximum:
+        result.emplace_back(q.name, maximum(q, state));
+        break;
     }
   }
   return result;
 }
 
-std::vector<double> Recorder::von_mises(std::span<const Mat3> H, std::vector<double>* pressure) const {
+std::vector<double> Recorder::von_mises(std::span<const Mat3> H,
+                                        std::vector<double>* pressure) const {
   std::vector<double> result(H.size());
   if (pressure) pressure->resize(H.size());
   for (std::size_t a = 0; a < H.size(); ++a) {
@@ -222,8 +245,11 @@ void Recorder::frame(const State& state) {
     u.insert(u.end(), {u_a[0], u_a[1], u_a[2]});
     v.insert(v.end(), {v_a[0], v_a[1], v_a[2]});
   }
-  std::vector<scene::FrameField> fields{{"displacement", 3, u}, {"velocity", 3, v}, {"von_mises", 1, mises},
-                                        {"pressure", 1, pressure}, {"volume", 1, body.V}};
+  std::vector<scene::FrameField> fields{{"displacement", 3, u},
+                                        {"velocity", 3, v},
+                                        {"von_mises", 1, mises},
+                                        {"pressure", 1, pressure},
+                                        {"volume", 1, body.V}};
   if (m_problem.exact_displacement) {
     error = values("displacement_error", state);
     fields.push_back({"displacement_error", 1, error});
@@ -233,7 +259,8 @@ void Recorder::frame(const State& state) {
 
 void Recorder::add_invariants(scene::Result& result, bool dissipative) const {
   if (!m_any) return;
-  if (!dissipative && m_largest_energy > 0) result.invariants["energy_drift"] = m_energy_change / m_largest_energy;
+  if (!dissipative && m_largest_energy > 0)
+    result.invariants["energy_drift"] = m_energy_change / m_largest_energy;
   if (!m_free || m_linear_scale == 0) return;
   result.invariants["linear_momentum_drift"] = m_linear_change / m_linear_scale;
   result.invariants["angular_momentum_drift"] = m_angular_change / m_angular_scale;

@@ -1,5 +1,6 @@
 #pragma once
-// Small vectors that the processor handles in one register, and the choice of instruction set at run time.
+// Small vectors that the processor handles in one register, and the choice of instruction set
+// at run time.
 
 #include "scene/types.hpp"
 
@@ -7,11 +8,14 @@
 #include <new>
 #include <vector>
 
-/// Compiles a function for the baseline, AVX2 and AVX-512; the loader picks one. Everything called inside must be inlined.
-#if defined(CONCORD_NO_CLONES) || !defined(__x86_64__) || !defined(__GNUC__) || defined(__clang__)
+/// Compiles a function for the baseline, AVX2 and AVX-512; the loader picks one. Everything
+/// called inside must be inlined.
+#if defined(CONCORD_NO_CLONES) || !defined(__x86_64__) || !defined(__GNUC__) ||                \
+    defined(__clang__)
 #define CONCORD_CLONES
 #else
-#define CONCORD_CLONES __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
+#define CONCORD_CLONES                                                                         \
+  __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #endif
 #define CONCORD_INLINE inline __attribute__((always_inline))
 
@@ -20,21 +24,18 @@ namespace concord::particle {
 typedef double v4d __attribute__((vector_size(32)));
 typedef double v2d __attribute__((vector_size(16)));
 
-/// A spatial vector in a register: 3 components and a zero lane in 3D, 2 components in the plane.
-template <int Dim>
-struct Lanes;
-template <>
-struct Lanes<3> {
+/// A spatial vector in a register: 3 components and a zero lane in 3D, 2 components in the
+/// plane.
+template <int Dim> struct Lanes;
+template <> struct Lanes<3> {
   using type = v4d;
   static constexpr int stride = 4;
 };
-template <>
-struct Lanes<2> {
+template <> struct Lanes<2> {
   using type = v2d;
   static constexpr int stride = 2;
 };
-template <int Dim>
-using Vec = typename Lanes<Dim>::type;
+template <int Dim> using Vec = typename Lanes<Dim>::type;
 
 /// Doubles from one particle to the next in a column of vectors.
 constexpr int stride_of(int dim) { return dim == 3 ? 4 : 2; }
@@ -46,30 +47,25 @@ CONCORD_INLINE v2d broadcast(double s, v2d) { return v2d{s, s}; }
 CONCORD_INLINE double lane_sum(v4d a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 CONCORD_INLINE double lane_sum(v2d a) { return a[0] + a[1]; }
 
-template <class V>
-CONCORD_INLINE V load(const double* p) {
+template <class V> CONCORD_INLINE V load(const double* p) {
   return *reinterpret_cast<const V*>(p);
 }
-template <class V>
-CONCORD_INLINE void store(double* p, V v) {
-  *reinterpret_cast<V*>(p) = v;
-}
+template <class V> CONCORD_INLINE void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
 
 /// Allocates on cache lines, so that no vector straddles two.
-template <class T>
-struct CacheAligned {
+template <class T> struct CacheAligned {
   using value_type = T;
   CacheAligned() = default;
-  template <class U>
-  CacheAligned(const CacheAligned<U>&) noexcept {}
+  template <class U> CacheAligned(const CacheAligned<U>&) noexcept {}
   T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{64}));
+    return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64}));
   }
-  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, std::align_val_t{64}); }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete (p, std::align_val_t{64}); }
   friend bool operator==(const CacheAligned&, const CacheAligned&) { return true; }
 };
 
-/// A column of doubles, one vector (stride_of(dim) doubles, unused lane zero) or tensor (dim vectors) a particle.
+/// A column of doubles, one vector (stride_of(dim) doubles, unused lane zero) or tensor (dim
+/// vectors) a particle.
 using Column = std::vector<double, CacheAligned<double>>;
 
 }  // namespace concord::particle

@@ -21,7 +21,8 @@ void scale(Column& a, double factor) {
 
 }  // namespace
 
-SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints, const Executor& executor)
+SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints,
+                               const Executor& executor)
     : m_model(model), m_constraints(constraints), m_executor(executor) {
   const Body& body = model.body();
   m_root.resize(body.n);
@@ -29,7 +30,8 @@ SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints
   m_start.assign(body.X.size(), 0.0);
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0; i < body.dim; ++i) {
-      m_start[static_cast<std::size_t>(a) * body.stride + i] = scene::uniform_random(12345, a, i) - 0.5;
+      m_start[static_cast<std::size_t>(a) * body.stride + i] =
+          scene::uniform_random(12345, a, i) - 0.5;
     }
   }
 }
@@ -39,10 +41,12 @@ void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& r
   double largest = 0;
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0; i < body.dim; ++i) {
-      largest = std::max(largest, std::abs(w[static_cast<std::size_t>(a) * body.stride + i]) / m_root[a]);
+      largest = std::max(largest, std::abs(w[static_cast<std::size_t>(a) * body.stride + i]) /
+                                      m_root[a]);
     }
   }
-  const double epsilon = 1e-6 * body.h_min / largest;  // displacements of 1e-6 spacings: error about 1e-8 relative
+  const double epsilon =
+      1e-6 * body.h_min / largest;  // displacements of 1e-6 spacings: error about 1e-8 relative
   for (const double sign : {1.0, -1.0}) {
     for (Index a = 0; a < body.n; ++a) {
       for (int i = 0; i < body.stride; ++i) {
@@ -77,7 +81,8 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
     apply(u, current, next);
     const double alpha = dot(current, next, m_executor);
     const double beta_before = off_diagonal.empty() ? 0.0 : off_diagonal.back();
-    for (std::size_t k = 0; k < size; ++k) next[k] -= alpha * current[k] + beta_before * previous[k];
+    for (std::size_t k = 0; k < size; ++k)
+      next[k] -= alpha * current[k] + beta_before * previous[k];
     diagonal.push_back(alpha);
     const auto count = static_cast<Eigen::Index>(diagonal.size());
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
@@ -87,7 +92,8 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
     estimates.push_back(eigen.eigenvalues().maxCoeff());
     const double beta = std::sqrt(dot(next, next, m_executor));
     const bool exhausted = !(beta > 1e-9 * std::abs(estimates.back()));
-    const bool settled = it >= 8 && estimates.back() - estimates[it - 5] < tolerance * estimates.back();
+    const bool settled =
+        it >= 8 && estimates.back() - estimates[it - 5] < tolerance * estimates.back();
     if (exhausted || settled) break;
     off_diagonal.push_back(beta);
     std::swap(previous, current);

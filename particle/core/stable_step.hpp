@@ -6,15 +6,17 @@
 
 namespace concord::particle {
 
-/// Largest angular frequency of the free particles about the current displacement, by Lanczos iteration on
-/// M^-1/2 K M^-1/2 (power iteration that keeps what it has seen). K w is taken as the central difference of the forces along
-/// w, so it holds for every formulation and deformation; the estimate approaches omega_max from below.
+/// Largest angular frequency of the free particles about the current displacement, by Lanczos
+/// iteration on M^-1/2 K M^-1/2 (power iteration that keeps what it has seen). K w is taken as
+/// the central difference of the forces along w, so it holds for every formulation and
+/// deformation; the estimate approaches omega_max from below.
 class SpectralRadius {
  public:
   SpectralRadius(ForceModel& model, const Constraints& constraints, const Executor& executor);
 
-  /// omega_max [rad/s] at displacement u. Starts from a fixed random vector. Stops when the estimate rose by less than
-  /// `tolerance` over the last five iterations, at most `most` iterations (two force evaluations each).
+  /// omega_max [rad/s] at displacement u. Starts from a fixed random vector. Stops when the
+  /// estimate rose by less than `tolerance` over the last five iterations, at most `most`
+  /// iterations (two force evaluations each).
   double omega_max(std::span<const double> u, double tolerance = 2e-3, int most = 60);
 
  private:

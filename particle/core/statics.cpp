@@ -18,8 +18,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Number of rigid motions (of 6, or 3 in the plane) that the constraints leave free: rank deficiency of the motions'
-/// values on the prescribed components, lengths over the body's size.
+/// Number of rigid motions (of 6, or 3 in the plane) that the constraints leave free: rank
+/// deficiency of the motions' values on the prescribed components, lengths over the body's
+/// size.
 int free_rigid_motions(const Body& body, const Constraints& constraints) {
   const int count = body.dim == 3 ? 6 : 3;
   Vec3 centre = Vec3::Zero();
@@ -38,7 +39,8 @@ int free_rigid_motions(const Body& body, const Constraints& constraints) {
     }
     normal += motion * motion.transpose();
   }
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal).eigenvalues();
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal).eigenvalues();
   return static_cast<int>((values.array() < 1e-12 * std::max(1.0, values.maxCoeff())).count());
 }
 
@@ -51,28 +53,34 @@ struct Statics::Factors {
   bool analysed = false, use_lu = false;
 };
 
-Statics::Statics(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
-                 const ExternalLoads& loads, const Executor& executor)
-    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads), m_executor(executor),
-      m_work(model.body(), constraints, loads), m_factors(std::make_unique<Factors>()) {
+Statics::Statics(const scene::Problem& problem, ForceModel& model,
+                 const Constraints& constraints, const ExternalLoads& loads,
+                 const Executor& executor)
+    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads),
+      m_executor(executor), m_work(model.body(), constraints, loads),
+      m_factors(std::make_unique<Factors>()) {
   const Body& body = model.body();
   if (const int rigid = free_rigid_motions(body, constraints); rigid > 0) {
-    throw InputError({problem.file.string(), 0, 0}, "boundary",
-                     fmt::format("displacement conditions that leave {} rigid motion{} of the body free", rigid,
-                                 rigid > 1 ? "s" : ""),
-                     "for a static scene, [[boundary]] entries (fixed, symmetric, antisymmetric or displacement) that "
-                     "prevent every translation and rotation");
+    throw InputError(
+        {problem.file.string(), 0, 0}, "boundary",
+        fmt::format("displacement conditions that leave {} rigid motion{} of the body free",
+                    rigid, rigid > 1 ? "s" : ""),
+        "for a static scene, [[boundary]] entries (fixed, symmetric, antisymmetric or "
+        "displacement) that "
+        "prevent every translation and rotation");
   }
   m_u.assign(body.X.size(), 0.0);
   m_v = m_f = m_u;
   m_equation.assign(static_cast<std::size_t>(body.n) * body.dim, 0);
-  for (const PrescribedDof& dof : constraints.dofs()) m_equation[dof.particle * body.dim + dof.component] = -1;
+  for (const PrescribedDof& dof : constraints.dofs())
+    m_equation[dof.particle * body.dim + dof.component] = -1;
   for (Index& e : m_equation) e = e < 0 ? -1 : m_free++;
 }
 
 Statics::~Statics() = default;
 
-/// Norm of the unbalanced force on free components; m_scale receives that of the internal forces.
+/// Norm of the unbalanced force on free components; m_scale receives that of the internal
+/// forces.
 double Statics::evaluate(double t) {
   const Body& body = m_model.body();
   m_model.forces(m_u, m_v, m_f, m_executor);
@@ -100,8 +108,8 @@ bool Statics::try_displacement(const Column& trial, double t, double& residual) 
   return std::isfinite(residual);
 }
 
-/// Factorises the tangent at m_u and solves for the correction of the free components; `correction` holds the prescribed
-/// increments on entry when `lift`.
+/// Factorises the tangent at m_u and solves for the correction of the free components;
+/// `correction` holds the prescribed increments on entry when `lift`.
 void Statics::solve(const Column& right, Column& correction, bool lift) {
   const Body& body = m_model.body();
   const Sparse K = m_model.tangent(m_u);
@@ -109,12 +117,15 @@ void Statics::solve(const Column& right, Column& correction, bool lift) {
   Eigen::VectorXd b(m_free), lifted = Eigen::VectorXd::Zero(m_free);
   entries.reserve(K.nonZeros());
   for (int c = 0; c < K.outerSize(); ++c) {
-    const double moved = correction[static_cast<std::size_t>(c / body.dim) * body.stride + c % body.dim];
+    const double moved =
+        correction[static_cast<std::size_t>(c / body.dim) * body.stride + c % body.dim];
     for (Sparse::InnerIterator it(K, c); it; ++it) {
       const Index row = m_equation[it.row()], column = m_equation[c];
       if (row < 0) continue;
-      if (column >= 0) entries.emplace_back(row, column, it.value());
-      else if (lift) lifted[row] += it.value() * moved;
+      if (column >= 0)
+        entries.emplace_back(row, column, it.value());
+      else if (lift)
+        lifted[row] += it.value() * moved;
     }
   }
   for (Index a = 0; a < body.n; ++a) {
@@ -168,10 +179,12 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
     double length = 1;
     bool accepted = false;
     for (int halving = 0; halving < 12 && !accepted; ++halving, length *= 0.5) {
-      for (std::size_t k = 0; k < trial.size(); ++k) trial[k] = base[k] + length * correction[k];
+      for (std::size_t k = 0; k < trial.size(); ++k)
+        trial[k] = base[k] + length * correction[k];
       if (it == 1) m_constraints.impose(t, trial);
       // The first correction brings the prescribed motion in and may raise the residual.
-      accepted = try_displacement(trial, t, residual) && (it == 1 || residual < before || residual <= options.tolerance * m_scale);
+      accepted = try_displacement(trial, t, residual) &&
+                 (it == 1 || residual < before || residual <= options.tolerance * m_scale);
     }
     const bool small = before <= 100 * options.tolerance * m_scale;
     if (!accepted && it > 1 && small) {  // stagnation at round-off
@@ -179,14 +192,16 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
       return try_displacement(base, t, again);
     }
     if (!accepted) return give_up();
-    if (it > 1 && residual <= options.tolerance * m_scale && residual > 0.25 * before) return true;
+    if (it > 1 && residual <= options.tolerance * m_scale && residual > 0.25 * before)
+      return true;
     if (residual == 0) return true;
     before = residual;
     std::fill(correction.begin(), correction.end(), 0.0);
     solve(Column(m_f), correction, false);
     scene::check_interrupt();
   }
-  m_failure = fmt::format("residual {:.3g} of {:.3g} after {} iterations", residual, m_scale, options.most_iterations);
+  m_failure = fmt::format("residual {:.3g} of {:.3g} after {} iterations", residual, m_scale,
+                          options.most_iterations);
   return before <= 100 * options.tolerance * m_scale || give_up();
 }
 
@@ -202,7 +217,9 @@ State Statics::state() const {
 void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutcome& outcome) {
   using Clock = std::chrono::steady_clock;
   auto begin = Clock::now();
-  const auto pause = [&] { outcome.solve_s += std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto pause = [&] {
+    outcome.solve_s += std::chrono::duration<double>(Clock::now() - begin).count();
+  };
   (void)evaluate(0);
   m_work.start(0, m_u, m_f);
   double step = 1.0 / options.load_steps;
@@ -220,15 +237,18 @@ void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutc
       step *= 0.5;
       if (step >= smallest) continue;
       pause();
-      throw SolveError("equilibrium", outcome.iterations, m_t, -1,
-                       fmt::format("Newton's method does not converge beyond load parameter {:.6g}: {}", m_t, m_failure));
+      throw SolveError(
+          "equilibrium", outcome.iterations, m_t, -1,
+          fmt::format("Newton's method does not converge beyond load parameter {:.6g}: {}", m_t,
+                      m_failure));
     }
     m_t = t > 1 - 1e-12 ? 1.0 : t;
     outcome.t = m_t;
     if (m_work.follows_steps()) m_work.step(m_t, m_u, m_f);
     pause();
     recorder.row(state());
-    if (m_t == 1.0 || (options.frames > 0 && m_t >= static_cast<double>(next_frame) / options.frames)) {
+    if (m_t == 1.0 ||
+        (options.frames > 0 && m_t >= static_cast<double>(next_frame) / options.frames)) {
       recorder.frame(state());
       next_frame = static_cast<int>(m_t * options.frames) + 1;
     }

@@ -1,5 +1,6 @@
 #pragma once
-// The one quasi-static solver of all particle methods: Newton's method with the assembled tangent.
+// The one quasi-static solver of all particle methods: Newton's method with the assembled
+// tangent.
 
 #include "particle/core/recorder.hpp"
 #include "particle/core/work.hpp"
@@ -10,8 +11,9 @@ namespace concord::particle {
 
 struct StaticsOptions {
   int load_steps = 1;
-  /// Converged when |r| <= tolerance * scale over free components, scale the norm of all internal forces (reactions
-  /// included), or when r stagnates at round-off below 100 * tolerance * scale.
+  /// Converged when |r| <= tolerance * scale over free components, scale the norm of all
+  /// internal forces (reactions included), or when r stagnates at round-off below 100 *
+  /// tolerance * scale.
   double tolerance = 1e-12;
   int most_iterations = 40;  ///< per load step
   int most_halvings = 10;    ///< of a load step that does not converge
@@ -21,22 +23,23 @@ struct StaticsOptions {
 
 struct StaticsOutcome {
   long iterations = 0;
-  double t = 0;         ///< load parameter reached, 1 at the end
-  double solve_s = 0;   ///< wall time without output
+  double t = 0;        ///< load parameter reached, 1 at the end
+  double solve_s = 0;  ///< wall time without output
 };
 
-/// Equilibrium for load parameter t from 0 to 1. Each step starts with the tangent predictor (prescribed increments lifted
-/// through the tangent), then Newton with backtracking on |r|; CHOLMOD where the tangent is symmetric and positive
-/// definite, UMFPACK else. A step that fails is halved.
+/// Equilibrium for load parameter t from 0 to 1. Each step starts with the tangent predictor
+/// (prescribed increments lifted through the tangent), then Newton with backtracking on |r|;
+/// CHOLMOD where the tangent is symmetric and positive definite, UMFPACK else. A step that
+/// fails is halved.
 class Statics {
  public:
   /// Throws InputError when the constraints leave a rigid motion free.
-  Statics(const scene::Problem& problem, ForceModel& model, const Constraints& constraints, const ExternalLoads& loads,
-          const Executor& executor);
+  Statics(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
+          const ExternalLoads& loads, const Executor& executor);
   ~Statics();
 
-  /// Throws SolveError when a step does not converge though halved, or the tangent is singular; the recorder then has all
-  /// load steps reached. `outcome` is current whenever it throws.
+  /// Throws SolveError when a step does not converge though halved, or the tangent is singular;
+  /// the recorder then has all load steps reached. `outcome` is current whenever it throws.
   void run(const StaticsOptions& options, Recorder& recorder, StaticsOutcome& outcome);
   State state() const;
 
@@ -52,7 +55,8 @@ class Statics {
   const Constraints& m_constraints;
   const ExternalLoads& m_loads;
   const Executor& m_executor;
-  std::vector<Index> m_equation;  ///< of each unknown (particle*dim + component): number among the free ones, or -1
+  std::vector<Index> m_equation;  ///< of each unknown (particle*dim + component): number among
+                                  ///< the free ones, or -1
   Index m_free = 0;
   Column m_u, m_v, m_f;
   double m_scale = 0, m_t = 0;

@@ -27,7 +27,8 @@ std::vector<Index> hull_cells(const scene::Mesh& mesh) {
   if (mesh.dim == 3) {
     using Vb = CGAL::Triangulation_vertex_base_with_info_3<Index, Kernel>;
     using Cb = CGAL::Delaunay_triangulation_cell_base_3<Kernel>;
-    using Tri = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vb, Cb>>;
+    using Tri =
+        CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vb, Cb>>;
     std::vector<std::pair<Kernel::Point_3, Index>> points;
     points.reserve(mesh.nodes.size());
     for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
@@ -43,11 +44,13 @@ std::vector<Index> hull_cells(const scene::Mesh& mesh) {
   } else {
     using Vb = CGAL::Triangulation_vertex_base_with_info_2<Index, Kernel>;
     using Fb = CGAL::Triangulation_face_base_2<Kernel>;
-    using Tri = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vb, Fb>>;
+    using Tri =
+        CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vb, Fb>>;
     std::vector<std::pair<Kernel::Point_2, Index>> points;
     points.reserve(mesh.nodes.size());
     for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
-      points.emplace_back(Kernel::Point_2(mesh.nodes[a][0], mesh.nodes[a][1]), static_cast<Index>(a));
+      points.emplace_back(Kernel::Point_2(mesh.nodes[a][0], mesh.nodes[a][1]),
+                          static_cast<Index>(a));
     }
     const Tri tri(points.begin(), points.end());
     if (tri.dimension() < 2) return cells;
@@ -59,7 +62,8 @@ std::vector<Index> hull_cells(const scene::Mesh& mesh) {
   return cells;
 }
 
-/// The mesh's boundary as simplices (quadrilateral facets split), dim vertices each, with their entities.
+/// The mesh's boundary as simplices (quadrilateral facets split), dim vertices each, with their
+/// entities.
 struct Surface {
   std::vector<Index> facets;
   std::vector<Index> entity;
@@ -116,7 +120,8 @@ using NodeFaces = std::vector<std::vector<Index>>;
 NodeFaces node_faces(const scene::Mesh& mesh, const Surface& surface) {
   NodeFaces of_node(mesh.nodes.size());
   for (std::size_t f = 0; f < surface.entity.size(); ++f) {
-    for (int k = 0; k < mesh.dim; ++k) of_node[surface.facets[f * mesh.dim + k]].push_back(surface.entity[f]);
+    for (int k = 0; k < mesh.dim; ++k)
+      of_node[surface.facets[f * mesh.dim + k]].push_back(surface.entity[f]);
   }
   for (auto& list : of_node) {
     std::sort(list.begin(), list.end());
@@ -128,7 +133,9 @@ NodeFaces node_faces(const scene::Mesh& mesh, const Surface& surface) {
 /// Whether some face of the body holds all the vertices.
 bool share_a_face(const NodeFaces& faces, const Index* v, int count) {
   return std::any_of(faces[v[0]].begin(), faces[v[0]].end(), [&](Index face) {
-    return std::all_of(v + 1, v + count, [&](Index w) { return std::binary_search(faces[w].begin(), faces[w].end(), face); });
+    return std::all_of(v + 1, v + count, [&](Index w) {
+      return std::binary_search(faces[w].begin(), faces[w].end(), face);
+    });
   });
 }
 
@@ -145,7 +152,8 @@ std::vector<Index> free_facets(const Triangulation& t) {
     const Index* v = &t.simplices[s * nv];
     for (int k = 0; k < nv; ++k) {
       Entry e{};
-      if (t.dim == 3) {  // outward orientation of the face opposite to vertex k of a positive tetrahedron
+      if (t.dim == 3) {  // outward orientation of the face opposite to vertex k of a positive
+                         // tetrahedron
         constexpr int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
         e.oriented = {v[face[k][0]], v[face[k][1]], v[face[k][2]]};
       } else {
@@ -161,16 +169,18 @@ std::vector<Index> free_facets(const Triangulation& t) {
   for (std::size_t i = 0; i < entries.size();) {
     std::size_t j = i + 1;
     while (j < entries.size() && entries[j].sorted == entries[i].sorted) ++j;
-    if (j == i + 1) facets.insert(facets.end(), entries[i].oriented.begin(), entries[i].oriented.begin() + t.dim);
+    if (j == i + 1)
+      facets.insert(facets.end(), entries[i].oriented.begin(),
+                    entries[i].oriented.begin() + t.dim);
     i = j;
   }
   return facets;
 }
 
-/// The gmsh entity each boundary facet lies on: the one whose facets contain all its vertices; where several do (at
-/// corners), the one whose nearest facet has the most similar normal.
-std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mesh, const Surface& surface,
-                                  const NodeFaces& of_node) {
+/// The gmsh entity each boundary facet lies on: the one whose facets contain all its vertices;
+/// where several do (at corners), the one whose nearest facet has the most similar normal.
+std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mesh,
+                                  const Surface& surface, const NodeFaces& of_node) {
   // Normal of an entity near a node: sum over its facets at that node.
   std::map<std::pair<Index, Index>, Vec3> normal;
   for (std::size_t f = 0; f < surface.entity.size(); ++f) {
@@ -192,8 +202,10 @@ std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mes
       Vec3 N = Vec3::Zero();
       for (int k = 0; k < t.dim; ++k) {
         const auto it = normal.find({candidate, v[k]});
-        if (it == normal.end()) all = false;
-        else N += it->second.normalized();
+        if (it == normal.end())
+          all = false;
+        else
+          N += it->second.normalized();
       }
       if (!all) continue;
       const double match = std::abs(N.normalized().dot(A));
@@ -207,11 +219,14 @@ std::vector<Index> facet_entities(const Triangulation& t, const scene::Mesh& mes
   return entity;
 }
 
-[[noreturn]] void not_reproduced(const scene::Problem& problem, const std::string& found, double h) {
-  throw InputError(problem.geometry_where, "geometry", found,
-                   fmt::format("a Delaunay triangulation of the particles that fills the body and has its boundary; "
-                               "use more particles (the spacing is {:.4g} m) or a smaller perturbation",
-                               h));
+[[noreturn]] void not_reproduced(const scene::Problem& problem, const std::string& found,
+                                 double h) {
+  throw InputError(
+      problem.geometry_where, "geometry", found,
+      fmt::format(
+          "a Delaunay triangulation of the particles that fills the body and has its boundary; "
+          "use more particles (the spacing is {:.4g} m) or a smaller perturbation",
+          h));
 }
 
 void check_against_body(const Triangulation& t, const scene::Mesh& mesh, const Surface& surface,
@@ -221,8 +236,10 @@ void check_against_body(const Triangulation& t, const scene::Mesh& mesh, const S
     const Index* v = &surface.facets[f * mesh.dim];
     const Vec3 A = facet_area(mesh.dim, mesh.nodes, v);
     body_area += A.norm();
-    // A flat facet and another one through neighbouring nodes of a curved face differ by at most about h A/4 locally.
-    if (mesh.dim == 3 && !mesh.entities[surface.entity[f]].flat) slack += 0.25 * A.norm() * mesh.h;
+    // A flat facet and another one through neighbouring nodes of a curved face differ by at
+    // most about h A/4 locally.
+    if (mesh.dim == 3 && !mesh.entities[surface.entity[f]].flat)
+      slack += 0.25 * A.norm() * mesh.h;
   }
   body = scene::mesh_volume(mesh);
   double volume = 0, area = 0;
@@ -231,13 +248,21 @@ void check_against_body(const Triangulation& t, const scene::Mesh& mesh, const S
     area += facet_area(t.dim, mesh.nodes, &t.boundary[f * t.dim]).norm();
   }
   if (std::abs(volume - body) > 1e-9 * body + slack) {
-    not_reproduced(problem, fmt::format("cells with volume {:.10g} in a body of {:.10g}", volume, body), mesh.h);
+    not_reproduced(problem,
+                   fmt::format("cells with volume {:.10g} in a body of {:.10g}", volume, body),
+                   mesh.h);
   }
   if (std::abs(area - body_area) > 1e-9 * body_area + slack / mesh.h) {
-    not_reproduced(problem, fmt::format("a boundary of measure {:.10g} on a body with {:.10g}", area, body_area), mesh.h);
+    not_reproduced(
+        problem,
+        fmt::format("a boundary of measure {:.10g} on a body with {:.10g}", area, body_area),
+        mesh.h);
   }
   for (const Index e : t.boundary_entity) {
-    if (e < 0) not_reproduced(problem, "a boundary facet that joins particles of different faces of the body", mesh.h);
+    if (e < 0)
+      not_reproduced(problem,
+                     "a boundary facet that joins particles of different faces of the body",
+                     mesh.h);
   }
 }
 
@@ -273,7 +298,8 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
   Triangulation t;
   t.dim = dim;
   const std::vector<Index> cells = hull_cells(mesh);
-  if (cells.empty()) not_reproduced(problem, "particles that all lie in one plane or line", mesh.h);
+  if (cells.empty())
+    not_reproduced(problem, "particles that all lie in one plane or line", mesh.h);
   const Surface surface = body_surface(mesh);
   const NodeFaces faces = node_faces(mesh, surface);
   const double body = scene::mesh_volume(mesh);
@@ -295,12 +321,13 @@ Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem
       all_on_surface = all_on_surface && !faces[v[k]].empty();
       centroid += mesh.nodes[v[k]] / nv;
     }
-    // Flat cells along a face come from round-off in its points. Flat cells inside (four points of a lattice square) stay:
-    // their neighbours lean on them.
+    // Flat cells along a face come from round-off in its points. Flat cells inside (four points
+    // of a lattice square) stay: their neighbours lean on them.
     if (all_on_surface && std::abs(volumes[s]) < flat && share_a_face(faces, v, nv)) continue;
     if (all_on_surface && !convex && winding_number(mesh, surface, centroid) < 0.5) continue;
     t.simplices.insert(t.simplices.end(), v, v + nv);
-    if (volumes[s] < 0) std::swap(t.simplices[t.simplices.size() - 1], t.simplices[t.simplices.size() - 2]);
+    if (volumes[s] < 0)
+      std::swap(t.simplices[t.simplices.size() - 1], t.simplices[t.simplices.size() - 2]);
     t.volume.push_back(std::abs(volumes[s]));
   }
   t.boundary = free_facets(t);

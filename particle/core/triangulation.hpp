@@ -1,5 +1,6 @@
 #pragma once
-// Delaunay simplices of the particles that fill the body, their volumes, and the surface they reproduce.
+// Delaunay simplices of the particles that fill the body, their volumes, and the surface they
+// reproduce.
 
 #include "scene/geometry.hpp"
 
@@ -8,32 +9,35 @@
 
 namespace concord::particle {
 
-/// The body cut into simplices with particles as vertices (Sec. 2.1 of the Delaunay paper). Vertex numbers are those of the
-/// points handed in; simplices are positively oriented.
+/// The body cut into simplices with particles as vertices (Sec. 2.1 of the Delaunay paper).
+/// Vertex numbers are those of the points handed in; simplices are positively oriented.
 struct Triangulation {
   int dim = 3;
-  std::vector<Index> simplices;       ///< dim+1 vertices each
-  std::vector<double> volume;         ///< |t| of each simplex [m^dim]
-  std::vector<Index> boundary;        ///< dim vertices of each boundary facet, outward oriented
-  std::vector<Index> boundary_entity; ///< gmsh entity (index into Mesh::entities) that each boundary facet lies on
-  std::vector<char> on_boundary;      ///< per point
+  std::vector<Index> simplices;  ///< dim+1 vertices each
+  std::vector<double> volume;    ///< |t| of each simplex [m^dim]
+  std::vector<Index> boundary;   ///< dim vertices of each boundary facet, outward oriented
+  std::vector<Index> boundary_entity;  ///< gmsh entity (index into Mesh::entities) that each
+                                       ///< boundary facet lies on
+  std::vector<char> on_boundary;       ///< per point
 
   std::size_t size() const { return volume.size(); }
 };
 
-/// Delaunay triangulation of the mesh's nodes by CGAL, restricted to the body. Cells outside a non-convex body are dropped
-/// (generalised winding number of the centroid), as are flat cells along its faces. Throws InputError at the problem's
-/// geometry when the cells' volumes do not add up to the body's or its boundary is not reproduced: the spacing is then too
-/// coarse for the shape. The tolerance is 1e-9 relative for bodies with plane faces; bodies with curved faces may differ
-/// by what a flat facet cuts off, h^2/4 of the local turning a facet.
+/// Delaunay triangulation of the mesh's nodes by CGAL, restricted to the body. Cells outside a
+/// non-convex body are dropped (generalised winding number of the centroid), as are flat cells
+/// along its faces. Throws InputError at the problem's geometry when the cells' volumes do not
+/// add up to the body's or its boundary is not reproduced: the spacing is then too coarse for
+/// the shape. The tolerance is 1e-9 relative for bodies with plane faces; bodies with curved
+/// faces may differ by what a flat facet cuts off, h^2/4 of the local turning a facet.
 Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem);
 
-/// |t| grad w_k of the linear shape functions of one simplex, and its signed volume |t| [m^dim]. X: dim+1 vertices; result: dim+1
-/// vectors [m^(dim-1)], area vectors of the opposite faces over dim. Without division: flat simplices (lattices have them) are
-/// as good as any.
+/// |t| grad w_k of the linear shape functions of one simplex, and its signed volume |t|
+/// [m^dim]. X: dim+1 vertices; result: dim+1 vectors [m^(dim-1)], area vectors of the opposite
+/// faces over dim. Without division: flat simplices (lattices have them) are as good as any.
 double volume_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> volume_times_g);
 
-/// Gradients grad w_k themselves [1/m]; not finite for a flat simplex. Returns the signed volume.
+/// Gradients grad w_k themselves [1/m]; not finite for a flat simplex. Returns the signed
+/// volume.
 double shape_gradients(int dim, std::span<const Vec3> X, std::span<Vec3> g);
 
 }  // namespace concord::particle

@@ -5,7 +5,8 @@
 
 namespace concord::particle {
 
-ExternalWork::ExternalWork(const Body& body, const Constraints& constraints, const ExternalLoads& loads)
+ExternalWork::ExternalWork(const Body& body, const Constraints& constraints,
+                           const ExternalLoads& loads)
     : m_body(body), m_constraints(constraints), m_loads(loads) {
   std::map<std::size_t, char> dofs;
   for (const Index a : loads.varying_particles()) {
@@ -27,8 +28,9 @@ ExternalWork::ExternalWork(const Body& body, const Constraints& constraints, con
   if (loads.depend_on_time()) m_varying.assign(body.X.size(), 0.0);
 }
 
-/// Varying load on a followed component; on a prescribed one minus the internal force, less the constant load, whose work
-/// total() counts: then load and reaction together do the work of -f_internal.
+/// Varying load on a followed component; on a prescribed one minus the internal force, less the
+/// constant load, whose work total() counts: then load and reaction together do the work of
+/// -f_internal.
 void ExternalWork::forces(double t, std::span<const double> f, std::vector<double>& out) {
   out.resize(m_dofs.size());
   if (!m_varying.empty()) {
@@ -64,10 +66,12 @@ void ExternalWork::step(double t, std::span<const double> u, std::span<const dou
 
 double ExternalWork::total(std::span<const double> u, std::span<const double> v) const {
   double work = m_work;
-  for (std::size_t k = 0; k < m_constant.size(); ++k) work += m_constant[k] * (u[k] - m_start_u[k]);
+  for (std::size_t k = 0; k < m_constant.size(); ++k)
+    work += m_constant[k] * (u[k] - m_start_u[k]);
   if (v.empty() || !m_constraints.moving()) return work;
   for (const PrescribedDof& dof : m_constraints.dofs()) {
-    const double v_k = v[static_cast<std::size_t>(dof.particle) * m_body.stride + dof.component];
+    const double v_k =
+        v[static_cast<std::size_t>(dof.particle) * m_body.stride + dof.component];
     work += 0.5 * m_body.m[dof.particle] * v_k * v_k;
   }
   return work;

@@ -8,10 +8,11 @@
 
 namespace concord::particle {
 
-/// External work since the start. Constant loads have a potential: their work is f.(u - u_0), asked for when needed. Only
-/// time-dependent loads and moving constraints are followed step by step, on the particles that they touch, by the
-/// trapezoidal rule: W += (F_n + F_{n+1})/2 . (u_{n+1} - u_n), with F = -f_internal on prescribed components. Where neither
-/// exists, nothing is stored and a step costs nothing.
+/// External work since the start. Constant loads have a potential: their work is f.(u - u_0),
+/// asked for when needed. Only time-dependent loads and moving constraints are followed step by
+/// step, on the particles that they touch, by the trapezoidal rule: W += (F_n + F_{n+1})/2 .
+/// (u_{n+1} - u_n), with F = -f_internal on prescribed components. Where neither exists,
+/// nothing is stored and a step costs nothing.
 class ExternalWork {
  public:
   ExternalWork(const Body& body, const Constraints& constraints, const ExternalLoads& loads);
@@ -21,8 +22,8 @@ class ExternalWork {
   void start(double t, std::span<const double> u, std::span<const double> f);
   /// Adds the work of the step that led to u, f at load time t.
   void step(double t, std::span<const double> u, std::span<const double> f);
-  /// Work so far at u [J]; v: velocities, whose kinetic energy on prescribed components is work of the constraint too
-  /// (empty in static runs).
+  /// Work so far at u [J]; v: velocities, whose kinetic energy on prescribed components is work
+  /// of the constraint too (empty in static runs).
   double total(std::span<const double> u, std::span<const double> v) const;
 
  private:

@@ -6,7 +6,8 @@
 namespace concord::particle::delaunay {
 namespace {
 
-/// One directed contribution |t| g_b / (n+1) of a simplex to B_ab, filed under the lower-numbered particle.
+/// One directed contribution |t| g_b / (n+1) of a simplex to B_ab, filed under the
+/// lower-numbered particle.
 struct Contribution {
   Index low, high;
   Vec3 B_low_high, B_high_low;
@@ -20,7 +21,8 @@ std::vector<Bond> gradient_vectors(const Body& body) {
   std::vector<Index> start(body.n + 1, 0);  // counting sort by the lower particle
   for (std::size_t s = 0; s < t.size(); ++s) {
     for (int i = 0; i < nv; ++i) {
-      for (int j = 0; j < i; ++j) ++start[std::min(t.simplices[s * nv + i], t.simplices[s * nv + j]) + 1];
+      for (int j = 0; j < i; ++j)
+        ++start[std::min(t.simplices[s * nv + i], t.simplices[s * nv + j]) + 1];
     }
   }
   for (Index a = 0; a < body.n; ++a) start[a + 1] += start[a];
@@ -30,7 +32,8 @@ std::vector<Bond> gradient_vectors(const Body& body) {
   for (std::size_t s = 0; s < t.size(); ++s) {
     const Index* v = &t.simplices[s * nv];
     for (int i = 0; i < nv; ++i) X[i] = body.position(v[i]);
-    // B_ab is the integral over a positively oriented simplex; a flat one may carry either sign and the same areas.
+    // B_ab is the integral over a positively oriented simplex; a flat one may carry either sign
+    // and the same areas.
     (void)volume_gradients(t.dim, X, g);
     const double scale = body.thickness / nv;
     for (int i = 0; i < nv; ++i) {
@@ -44,9 +47,12 @@ std::vector<Bond> gradient_vectors(const Body& body) {
   bonds.reserve(parts.size() / 4);
   for (Index a = 0; a < body.n; ++a) {
     const auto first = parts.begin() + start[a], last = parts.begin() + start[a + 1];
-    std::stable_sort(first, last, [](const Contribution& p, const Contribution& q) { return p.high < q.high; });
+    std::stable_sort(first, last, [](const Contribution& p, const Contribution& q) {
+      return p.high < q.high;
+    });
     for (auto p = first; p != last; ++p) {
-      if (p == first || p->high != (p - 1)->high) bonds.push_back({a, p->high, Vec3::Zero(), Vec3::Zero()});
+      if (p == first || p->high != (p - 1)->high)
+        bonds.push_back({a, p->high, Vec3::Zero(), Vec3::Zero()});
       bonds.back().B_ab += p->B_low_high;
       bonds.back().B_ba += p->B_high_low;
     }
@@ -66,7 +72,8 @@ double interface_area(int dim, const Bond& bond) {
 
 namespace {
 
-/// Where a bond goes: block and row, and whether it is kept there as a cut bond seen from `own`.
+/// Where a bond goes: block and row, and whether it is kept there as a cut bond seen from
+/// `own`.
 struct Place {
   Index block, row;
   bool cut;
@@ -90,7 +97,8 @@ void append(const Body& body, BondRows& rows, const Place& p, bool surface) {
   if (surface) record(rows.B_reverse, backward);
 }
 
-void fill_rows(const Body& body, BondRows& rows, Index row_count, const std::vector<Place>& places, bool surface) {
+void fill_rows(const Body& body, BondRows& rows, Index row_count,
+               const std::vector<Place>& places, bool surface) {
   rows.begin.assign(1, 0);
   std::size_t next = 0;
   for (Index r = 0; r < row_count; ++r) {
@@ -107,21 +115,27 @@ void fill_rows(const Body& body, BondRows& rows, Index row_count, const std::vec
 
 }  // namespace
 
-Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds, const std::vector<double>& area_over_length) {
+Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds,
+                  const std::vector<double>& area_over_length) {
   const std::vector<Index> begin = fixed_blocks(body.n);
   const Index block_count = static_cast<Index>(begin.size()) - 1;
   const auto block_of = [&](Index a) {
-    return static_cast<Index>(std::upper_bound(begin.begin(), begin.end(), a) - begin.begin()) - 1;
+    return static_cast<Index>(std::upper_bound(begin.begin(), begin.end(), a) - begin.begin()) -
+           1;
   };
   std::vector<std::array<std::vector<Place>, 2>> places(block_count);  // [regular, surface]
   for (std::size_t k = 0; k < bonds.size(); ++k) {
     const Bond& bond = bonds[k];
-    const bool surface = body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
+    const bool surface =
+        body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
     const double ratio = area_over_length.empty() ? 0.0 : area_over_length[k];
     const Index block_a = block_of(bond.a), block_b = block_of(bond.b);
     const bool cut = block_a != block_b;
-    places[block_a][surface].push_back({block_a, bond.a - begin[block_a], cut, bond.b, &bond, false, ratio});
-    if (cut) places[block_b][surface].push_back({block_b, bond.b - begin[block_b], true, bond.a, &bond, true, ratio});
+    places[block_a][surface].push_back(
+        {block_a, bond.a - begin[block_a], cut, bond.b, &bond, false, ratio});
+    if (cut)
+      places[block_b][surface].push_back(
+          {block_b, bond.b - begin[block_b], true, bond.a, &bond, true, ratio});
   }
   Bonds result;
   result.count = bonds.size();

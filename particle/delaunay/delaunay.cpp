@@ -6,8 +6,10 @@
 
 namespace concord::particle::delaunay {
 
-DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem, const Parameters& parameters)
-    : ForceModel(body), m_law(problem.material, problem.dimension), m_material(kernel_material(problem)) {
+DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
+                             const Parameters& parameters)
+    : ForceModel(body), m_law(problem.material, problem.dimension),
+      m_material(kernel_material(problem)) {
   m_pairs = gradient_vectors(body);
   m_contact = parameters.xi_n > 0 || parameters.xi_t > 0;
   const double E = problem.material.E, G = problem.material.mu;
@@ -27,14 +29,17 @@ DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem, co
   m_P.assign(m_H.size(), 0.0);
   m_bad.assign(m_bonds.blocks.size(), -1);
   if (parameters.c1 > 0 || parameters.c2 > 0) {
-    const double rho0 = problem.material.rho0, h = body.h_min;  // Eq. (61): h is the shortest branch vector
-    m_viscosity = Viscosity{rho0 * parameters.c1 * problem.material.longitudinal_wave_speed() * h,
-                            rho0 * parameters.c2 * h * h};
+    const double rho0 = problem.material.rho0,
+                 h = body.h_min;  // Eq. (61): h is the shortest branch vector
+    m_viscosity =
+        Viscosity{rho0 * parameters.c1 * problem.material.longitudinal_wave_speed() * h,
+                  rho0 * parameters.c2 * h * h};
     m_rate.assign(m_H.size(), 0.0);
   }
 }
 
-/// P += J sigma_visc F^-T (62) with rho J = rho0: (linear + quadratic |tr d|) d cof F / J, d = sym(dF/dt F^-1) (35), (36).
+/// P += J sigma_visc F^-T (62) with rho J = rho0: (linear + quadratic |tr d|) d cof F / J, d =
+/// sym(dF/dt F^-1) (35), (36).
 template <int Dim>
 void DelaunayModel::add_viscous_stress(const BondBlock& block, const double* v) {
   volume_gradients<Dim>(block, v, m_rate.data());
@@ -43,21 +48,24 @@ void DelaunayModel::add_viscous_stress(const BondBlock& block, const double* v) 
     const Mat3 inverse = F.inverse();
     const Mat3 l = tensor_at(m_rate, Dim, a) * m_inverse_V[a] * inverse;
     const Mat3 d = 0.5 * (l + l.transpose());
-    const Mat3 P = (m_viscosity->linear + m_viscosity->quadratic * std::abs(d.trace())) * d * inverse.transpose();
+    const Mat3 P = (m_viscosity->linear + m_viscosity->quadratic * std::abs(d.trace())) * d *
+                   inverse.transpose();
     for (int j = 0; j < Dim; ++j) {
-      for (int i = 0; i < Dim; ++i) m_P[(static_cast<std::size_t>(a) * Dim + j) * Lanes<Dim>::stride + i] += P(i, j);
+      for (int i = 0; i < Dim; ++i)
+        m_P[(static_cast<std::size_t>(a) * Dim + j) * Lanes<Dim>::stride + i] += P(i, j);
     }
   }
 }
 
 template <int Dim>
-void DelaunayModel::forces_in(const double* u, const double* v, double* f, const Executor& executor) {
+void DelaunayModel::forces_in(const double* u, const double* v, double* f,
+                              const Executor& executor) {
   const std::size_t count = m_bonds.blocks.size();
   executor.for_each(count, [&](std::size_t k) {
     const BondBlock& block = m_bonds.blocks[k];
     m_bad[k] = with_law(m_material.law, [&](auto law) {
-      return gradients_and_stress<Dim, decltype(law)::value>(block, m_material.lame, m_inverse_V.data(), u, m_H.data(),
-                                                             m_P.data(), f);
+      return gradients_and_stress<Dim, decltype(law)::value>(
+          block, m_material.lame, m_inverse_V.data(), u, m_H.data(), m_P.data(), f);
     });
     if (m_viscosity) add_viscous_stress<Dim>(block, v);
   });
@@ -65,33 +73,43 @@ void DelaunayModel::forces_in(const double* u, const double* v, double* f, const
     if (bad >= 0) throw BadState{"det F", bad};
   }
   if (m_contact) {
-    const ContactColumns columns{m_body.X.data(), u, m_H.data(), m_inverse_V.data(), m_P.data(), f};
+    const ContactColumns columns{m_body.X.data(),    u,          m_H.data(),
+                                 m_inverse_V.data(), m_P.data(), f};
     const ContactFactors factors{m_normal_factor, m_tangential_factor};
     executor.for_each(count, [&](std::size_t k) {
-      if (m_normal_factor == m_tangential_factor) contact<Dim, true>(m_bonds.blocks[k], factors, columns);
-      else contact<Dim, false>(m_bonds.blocks[k], factors, columns);
+      if (m_normal_factor == m_tangential_factor)
+        contact<Dim, true>(m_bonds.blocks[k], factors, columns);
+      else
+        contact<Dim, false>(m_bonds.blocks[k], factors, columns);
     });
   }
-  executor.for_each(count, [&](std::size_t k) { internal_force<Dim>(m_bonds.blocks[k], m_P.data(), f); });
+  executor.for_each(
+      count, [&](std::size_t k) { internal_force<Dim>(m_bonds.blocks[k], m_P.data(), f); });
 }
 
-void DelaunayModel::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
-                           const Executor& executor) {
-  if (m_body.dim == 3) forces_in<3>(u.data(), v.data(), f.data(), executor);
-  else forces_in<2>(u.data(), v.data(), f.data(), executor);
+void DelaunayModel::forces(std::span<const double> u, std::span<const double> v,
+                           std::span<double> f, const Executor& executor) {
+  if (m_body.dim == 3)
+    forces_in<3>(u.data(), v.data(), f.data(), executor);
+  else
+    forces_in<2>(u.data(), v.data(), f.data(), executor);
 }
 
 double DelaunayModel::viscous_damping_ratio(double omega_max) const {
-  // Damping c = (linear/rho0) k^2 against stiffness c_p^2 k^2 on the highest mode: ratio = linear w / (2 rho0 c_p^2).
+  // Damping c = (linear/rho0) k^2 against stiffness c_p^2 k^2 on the highest mode: ratio =
+  // linear w / (2 rho0 c_p^2).
   if (!m_viscosity) return 0;
-  return 0.5 * m_viscosity->linear * omega_max / (m_material.lame.lambda + 2 * m_material.lame.mu);
+  return 0.5 * m_viscosity->linear * omega_max /
+         (m_material.lame.lambda + 2 * m_material.lame.mu);
 }
 
 void DelaunayModel::compute_gradients(std::span<const double> u, const Executor& executor) {
   executor.for_each(m_bonds.blocks.size(), [&](std::size_t k) {
     const BondBlock& block = m_bonds.blocks[k];
-    if (m_body.dim == 3) volume_gradients<3>(block, u.data(), m_H.data());
-    else volume_gradients<2>(block, u.data(), m_H.data());
+    if (m_body.dim == 3)
+      volume_gradients<3>(block, u.data(), m_H.data());
+    else
+      volume_gradients<2>(block, u.data(), m_H.data());
     const std::size_t size = static_cast<std::size_t>(m_body.dim) * m_body.stride;
     for (Index a = block.first; a < block.last; ++a) {
       for (std::size_t i = 0; i < size; ++i) m_H[a * size + i] *= m_inverse_V[a];
@@ -124,16 +142,20 @@ Energies DelaunayModel::energies(std::span<const double> u, const Executor& exec
   return e;
 }
 
-DelaunayModel::Local DelaunayModel::local_displacement(std::size_t pair, std::span<const double> u) const {
+DelaunayModel::Local DelaunayModel::local_displacement(std::size_t pair,
+                                                       std::span<const double> u) const {
   const Bond& bond = m_pairs[pair];
   Local s;
   s.X_ab = m_body.position(bond.b) - m_body.position(bond.a);
   Vec3 u_ab = Vec3::Zero();
   for (int i = 0; i < m_body.dim; ++i) {
-    u_ab[i] = u[static_cast<std::size_t>(bond.b) * m_body.stride + i] - u[static_cast<std::size_t>(bond.a) * m_body.stride + i];
+    u_ab[i] = u[static_cast<std::size_t>(bond.b) * m_body.stride + i] -
+              u[static_cast<std::size_t>(bond.a) * m_body.stride + i];
   }
   s.x_ab = s.X_ab + u_ab;
-  s.u_loc = u_ab - 0.5 * (tensor_at(m_H, m_body.dim, bond.a) + tensor_at(m_H, m_body.dim, bond.b)) * s.X_ab;
+  s.u_loc =
+      u_ab -
+      0.5 * (tensor_at(m_H, m_body.dim, bond.a) + tensor_at(m_H, m_body.dim, bond.b)) * s.X_ab;
   s.K_n = m_normal_factor * m_stiffness[pair];
   s.K_t = m_tangential_factor * m_stiffness[pair];
   return s;

@@ -1,5 +1,6 @@
 #pragma once
-// The Delaunay particle method: nearest-neighbour gradient vectors, contact stabilisation, artificial viscosity.
+// The Delaunay particle method: nearest-neighbour gradient vectors, contact stabilisation,
+// artificial viscosity.
 
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
@@ -18,12 +19,14 @@ struct Parameters {
   double c2 = 0;    ///< quadratic artificial viscosity
 };
 
-/// Forces (46), (50) of the Delaunay method in the pair form of its README, on state u (displacement).
+/// Forces (46), (50) of the Delaunay method in the pair form of its README, on state u
+/// (displacement).
 class DelaunayModel final : public ForceModel {
  public:
   DelaunayModel(const Body& body, const scene::Problem& problem, const Parameters& parameters);
 
-  void forces(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor) override;
+  void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
+              const Executor& executor) override;
   Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
@@ -38,7 +41,8 @@ class DelaunayModel final : public ForceModel {
     double linear;     ///< rho0 c1 c_p h [Pa s]
     double quadratic;  ///< rho0 c2 h^2 [Pa s^2]
   };
-  template <int Dim> void forces_in(const double* u, const double* v, double* f, const Executor& executor);
+  template <int Dim>
+  void forces_in(const double* u, const double* v, double* f, const Executor& executor);
   template <int Dim> void add_viscous_stress(const BondBlock& block, const double* v);
   void compute_gradients(std::span<const double> u, const Executor& executor);
 

@@ -1,6 +1,7 @@
 #pragma once
 // The loops of one force evaluation of the Delaunay method, a block of particles at a time.
-// Each reads like the paper; numbers in parentheses are its equations. Columns: Dim vectors a particle for tensors.
+// Each reads like the paper; numbers in parentheses are its equations. Columns: Dim vectors a
+// particle for tensors.
 
 #include "particle/core/stress_kernel.hpp"
 #include "particle/delaunay/bonds.hpp"
@@ -8,13 +9,13 @@
 namespace concord::particle::delaunay {
 
 /// Tensor of one particle in registers, column by column.
-template <int Dim>
-struct Tensor {
+template <int Dim> struct Tensor {
   Vec<Dim> column[Dim];
 
   static CONCORD_INLINE Tensor load(const double* p) {
     Tensor t;
-    for (int k = 0; k < Dim; ++k) t.column[k] = particle::load<Vec<Dim>>(p + k * Lanes<Dim>::stride);
+    for (int k = 0; k < Dim; ++k)
+      t.column[k] = particle::load<Vec<Dim>>(p + k * Lanes<Dim>::stride);
     return t;
   }
   CONCORD_INLINE void store(double* p) const {
@@ -32,14 +33,14 @@ struct Tensor {
   }
 };
 
-template <int Dim>
-inline constexpr std::size_t vector_size = Lanes<Dim>::stride;
-template <int Dim>
-inline constexpr std::size_t tensor_size = Dim * Lanes<Dim>::stride;
+template <int Dim> inline constexpr std::size_t vector_size = Lanes<Dim>::stride;
+template <int Dim> inline constexpr std::size_t tensor_size = Dim* Lanes<Dim>::stride;
 
-/// Row r of V_a H_a = sum_b u_ab (x) B_ab (32); inner bonds add to both ends: u_ba (x) B_ba = u_ab (x) B_ab off the surface.
+/// Row r of V_a H_a = sum_b u_ab (x) B_ab (32); inner bonds add to both ends: u_ba (x) B_ba =
+/// u_ab (x) B_ab off the surface.
 template <int Dim, bool Surface>
-CONCORD_INLINE void gradient_row(const BondRows& rows, Index first, Index r, const double* u, double* H) {
+CONCORD_INLINE void gradient_row(const BondRows& rows, Index first, Index r, const double* u,
+                                 double* H) {
   const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
   if (begin == end) return;
   const Index a = first + r;
@@ -71,14 +72,16 @@ CONCORD_CLONES void volume_gradients(const BondBlock& block, const double* u, do
   const Index rows = block.last - block.first;
   std::fill(H + block.first * tensor_size<Dim>, H + block.last * tensor_size<Dim>, 0.0);
   for (Index r = 0; r < rows; ++r) gradient_row<Dim, true>(block.surface, block.first, r, u, H);
-  for (Index r = 0; r < rows; ++r) gradient_row<Dim, false>(block.regular, block.first, r, u, H);
+  for (Index r = 0; r < rows; ++r)
+    gradient_row<Dim, false>(block.regular, block.first, r, u, H);
 }
 
-/// H_a and P_a (53) of a block, and f_a = 0. The stress follows as soon as a group of rows is complete, while H is in cache.
-/// Returns the first particle with det F <= 0 or NaN, or -1.
+/// H_a and P_a (53) of a block, and f_a = 0. The stress follows as soon as a group of rows is
+/// complete, while H is in cache. Returns the first particle with det F <= 0 or NaN, or -1.
 template <int Dim, StressLaw Law>
-CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameConstants& c, const double* inverse_V,
-                                          const double* u, double* H, double* P, double* f) {
+CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameConstants& c,
+                                          const double* inverse_V, const double* u, double* H,
+                                          double* P, double* f) {
   const Index rows = block.last - block.first;
   std::fill(H + block.first * tensor_size<Dim>, H + block.last * tensor_size<Dim>, 0.0);
   std::fill(f + block.first * vector_size<Dim>, f + block.last * vector_size<Dim>, 0.0);
@@ -86,20 +89,21 @@ CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameCons
   Index bad_particle = -1;
   for (Index r = 0; r < rows; r += stress_width) {
     const Index count = std::min<Index>(stress_width, rows - r);
-    for (Index i = 0; i < count; ++i) gradient_row<Dim, false>(block.regular, block.first, r + i, u, H);
+    for (Index i = 0; i < count; ++i)
+      gradient_row<Dim, false>(block.regular, block.first, r + i, u, H);
     const Index a = block.first + r;
-    const unsigned bad = stress_of_group<Dim, Law>(c, count, inverse_V + a, H + a * tensor_size<Dim>,
-                                                   P + a * tensor_size<Dim>);
+    const unsigned bad = stress_of_group<Dim, Law>(
+        c, count, inverse_V + a, H + a * tensor_size<Dim>, P + a * tensor_size<Dim>);
     if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
   }
   return bad_particle;
 }
 
-/// One bond of the contact law (56)-(60): u_loc = u_ab - (H_a + H_b) X_ab / 2 (7), with x_ab = X_ab + u_ab.
-/// Isotropic: K_n = K_t (59).
+/// One bond of the contact law (56)-(60): u_loc = u_ab - (H_a + H_b) X_ab / 2 (7), with x_ab =
+/// X_ab + u_ab. Isotropic: K_n = K_t (59).
 template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum, double K_n, double K_t,
-                                Vec<Dim>& p, Vec<Dim>& q) {
+CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum,
+                                double K_n, double K_t, Vec<Dim>& p, Vec<Dim>& q) {
   double X_component[Lanes<Dim>::stride];
   particle::store(X_component, X_ab);
   const Vec<Dim> local = u_ab - H_sum.times(X_component) * broadcast(0.5, Vec<Dim>{});
@@ -126,14 +130,16 @@ struct ContactColumns {
   double *P, *f;
 };
 
-/// f_a += p_ab and P_a += Q_a / V_a with Q_a = -1/2 sum_b q_ab (x) X_ab (the adjoint of the second-neighbour sum in (50)).
+/// f_a += p_ab and P_a += Q_a / V_a with Q_a = -1/2 sum_b q_ab (x) X_ab (the adjoint of the
+/// second-neighbour sum in (50)).
 template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, const ContactFactors& factors,
-                                const ContactColumns& s) {
+CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r,
+                                const ContactFactors& factors, const ContactColumns& s) {
   const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
   if (begin == end) return;
   const Index a = first + r;
-  const Vec<Dim> u_a = load<Vec<Dim>>(s.u + a * vector_size<Dim>), X_a = load<Vec<Dim>>(s.X + a * vector_size<Dim>);
+  const Vec<Dim> u_a = load<Vec<Dim>>(s.u + a * vector_size<Dim>),
+                 X_a = load<Vec<Dim>>(s.X + a * vector_size<Dim>);
   const Tensor<Dim> H_a = Tensor<Dim>::load(s.H + a * tensor_size<Dim>);
   Tensor<Dim> P_a = Tensor<Dim>::load(s.P + a * tensor_size<Dim>);
   Vec<Dim> f_a = load<Vec<Dim>>(s.f + a * vector_size<Dim>);
@@ -163,15 +169,19 @@ CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r, cons
 }
 
 template <int Dim, bool Isotropic>
-CONCORD_CLONES void contact(const BondBlock& block, const ContactFactors& factors, const ContactColumns& s) {
+CONCORD_CLONES void contact(const BondBlock& block, const ContactFactors& factors,
+                            const ContactColumns& s) {
   const Index rows = block.last - block.first;
-  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.surface, block.first, r, factors, s);
-  for (Index r = 0; r < rows; ++r) contact_row<Dim, Isotropic>(block.regular, block.first, r, factors, s);
+  for (Index r = 0; r < rows; ++r)
+    contact_row<Dim, Isotropic>(block.surface, block.first, r, factors, s);
+  for (Index r = 0; r < rows; ++r)
+    contact_row<Dim, Isotropic>(block.regular, block.first, r, factors, s);
 }
 
 /// f_a += sum_b (P_a B_ab - P_b B_ba) (46); off the surface (P_a + P_b) B_ab.
 template <int Dim, bool Surface>
-CONCORD_INLINE void force_row(const BondRows& rows, Index first, Index r, const double* P, double* f) {
+CONCORD_INLINE void force_row(const BondRows& rows, Index first, Index r, const double* P,
+                              double* f) {
   const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
   if (begin == end) return;
   const Index a = first + r;
@@ -183,13 +193,15 @@ CONCORD_INLINE void force_row(const BondRows& rows, Index first, Index r, const 
     Tensor<Dim> P_b = Tensor<Dim>::load(P + b * tensor_size<Dim>);
     Vec<Dim> f_ab;
     if constexpr (Surface) {
-      f_ab = P_a.times(B) - P_b.times(&rows.B_reverse[static_cast<std::size_t>(k) * bond_record]);
+      f_ab =
+          P_a.times(B) - P_b.times(&rows.B_reverse[static_cast<std::size_t>(k) * bond_record]);
     } else {
       for (int i = 0; i < Dim; ++i) P_b.column[i] += P_a.column[i];
       f_ab = P_b.times(B);
     }
     f_a += f_ab;
-    if (k < cut) store(f + b * vector_size<Dim>, load<Vec<Dim>>(f + b * vector_size<Dim>) - f_ab);
+    if (k < cut)
+      store(f + b * vector_size<Dim>, load<Vec<Dim>>(f + b * vector_size<Dim>) - f_ab);
   }
   store(f + a * vector_size<Dim>, f_a);
 }

@@ -21,14 +21,17 @@ struct Variant {
   std::map<std::string, std::string> settings;
 };
 
-/// Every registered particle method with its defaults, and with the settings that take other paths through its kernels.
+/// Every registered particle method with its defaults, and with the settings that take other
+/// paths through its kernels.
 inline std::vector<Variant> variants() {
   std::vector<Variant> list;
   for (const scene::Method* method : scene::MethodRegistry::instance().all()) {
-    if (dynamic_cast<const ParticleMethod*>(method)) list.push_back({method->info().name, method->info().name, {}});
+    if (dynamic_cast<const ParticleMethod*>(method))
+      list.push_back({method->info().name, method->info().name, {}});
   }
   list.push_back({"delaunay_xi0", "delaunay", {{"xi_n", "0"}, {"xi_t", "0"}}});
-  list.push_back({"delaunay_xi_isotropic_half", "delaunay", {{"xi_n", "0.5"}, {"xi_t", "1.3"}}});
+  list.push_back(
+      {"delaunay_xi_isotropic_half", "delaunay", {{"xi_n", "0.5"}, {"xi_t", "1.3"}}});
   list.push_back({"tlsph_psi0", "tlsph", {{"psi", "0"}}});
   list.push_back({"tlsph_potential", "tlsph", {{"penalty", "potential"}}});
   list.push_back({"tlsph_wendland", "tlsph", {{"kernel", "wendland-c2"}, {"support", "2.5"}}});
@@ -42,26 +45,28 @@ struct Bench {
   Executor executor{1};
   std::unique_ptr<ForceModel> model;
 
-  Bench(const Variant& variant, const std::string& scene, double resolution, const std::vector<scene::Override>& set = {},
-        double perturb = 0.25, std::uint64_t seed = 5)
+  Bench(const Variant& variant, const std::string& scene, double resolution,
+        const std::vector<scene::Override>& set = {}, double perturb = 0.25,
+        std::uint64_t seed = 5)
       : problem(scene::read_problem(scene, set)),
         body(make_body(problem, problem.reference_length / resolution, perturb, seed)),
         model(make(variant)) {}
 
   std::unique_ptr<ForceModel> make(const Variant& variant) const {
-    const auto& method = dynamic_cast<const ParticleMethod&>(scene::MethodRegistry::instance().find(variant.method));
+    const auto& method = dynamic_cast<const ParticleMethod&>(
+        scene::MethodRegistry::instance().find(variant.method));
     const scene::Settings settings(variant.method, method.info().parameters, variant.settings);
     return method.make_model(body, problem, settings, executor);
   }
 
   Column zeros() const { return Column(body.X.size(), 0.0); }
 
-  template <class F>
-  Column column(const F& value) const {
+  template <class F> Column column(const F& value) const {
     Column c = zeros();
     for (Index a = 0; a < body.n; ++a) {
       const Vec3 v = value(a);
-      for (int i = 0; i < body.dim; ++i) c[static_cast<std::size_t>(a) * body.stride + i] = v[i];
+      for (int i = 0; i < body.dim; ++i)
+        c[static_cast<std::size_t>(a) * body.stride + i] = v[i];
     }
     return c;
   }
@@ -72,7 +77,8 @@ struct Bench {
     std::uniform_real_distribution<double> uniform(-1, 1);
     return column([&](Index a) {
       const Vec3 X = body.position(a) / problem.reference_length;
-      Vec3 u(0.2 * X[0] + 0.1 * X[1] * X[1], -0.15 * X[0] * X[1] + 0.1 * X[2], 0.12 * X[0] - 0.1 * X[2]);
+      Vec3 u(0.2 * X[0] + 0.1 * X[1] * X[1], -0.15 * X[0] * X[1] + 0.1 * X[2],
+             0.12 * X[0] - 0.1 * X[2]);
       u *= problem.reference_length;
       for (int i = 0; i < 3; ++i) u[i] += noise * body.h * uniform(generator);
       return u;
@@ -100,6 +106,8 @@ inline double norm(const Column& c) {
 
 class EveryMethod : public testing::TestWithParam<Variant> {};
 
-inline std::string variant_name(const testing::TestParamInfo<Variant>& info) { return info.param.name; }
+inline std::string variant_name(const testing::TestParamInfo<Variant>& info) {
+  return info.param.name;
+}
 
 }  // namespace concord::particle::test

@@ -12,12 +12,16 @@ namespace {
 INSTANTIATE_TEST_SUITE_P(Registered, EveryMethod, testing::ValuesIn(variants()), variant_name);
 
 /// Scale of forces that strains of order one would make.
-double force_scale(const Bench& b) { return b.problem.material.E * b.body.h * b.body.h * std::sqrt(b.body.n); }
+double force_scale(const Bench& b) {
+  return b.problem.material.E * b.body.h * b.body.h * std::sqrt(b.body.n);
+}
 
 TEST_P(EveryMethod, RigidMotionGivesNoForce) {
   Bench b(GetParam(), "spinning_block", 5);
   const Mat3 R = Eigen::AngleAxisd(2.0, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
-  const Column u = b.column([&](Index a) { return Vec3((R - Mat3::Identity()) * b.body.position(a) + Vec3(3, -2, 1)); });
+  const Column u = b.column([&](Index a) {
+    return Vec3((R - Mat3::Identity()) * b.body.position(a) + Vec3(3, -2, 1));
+  });
   EXPECT_LT(norm(b.force(u)), 1e-13 * force_scale(b));
 }
 
@@ -31,8 +35,9 @@ TEST_P(EveryMethod, AffineFieldHasExactGradients) {
   for (const Mat3& Ha : computed) EXPECT_LT((Ha - H).norm(), 2e-13);
 }
 
-/// Interior particles are in equilibrium under constant stress where the gradient vectors satisfy the integration constraint
-/// (31). Methods that cannot say so, and must then really fail.
+/// Interior particles are in equilibrium under constant stress where the gradient vectors
+/// satisfy the integration constraint (31). Methods that cannot say so, and must then really
+/// fail.
 TEST_P(EveryMethod, ConstantStressLeavesInteriorInEquilibrium) {
   Bench b(GetParam(), "spinning_block", 5);
   Mat3 H;
@@ -45,8 +50,10 @@ TEST_P(EveryMethod, ConstantStressLeavesInteriorInEquilibrium) {
   }
   const double scale = b.problem.material.E * H.norm() * b.body.h * b.body.h;
   const auto& cannot = scene::MethodRegistry::instance().find(GetParam().method).info().cannot;
-  if (cannot.count("equilibrium patch test")) EXPECT_GT(interior, 1e-6 * scale) << "declared failure did not happen";
-  else EXPECT_LT(interior, 1e-12 * scale);
+  if (cannot.count("equilibrium patch test"))
+    EXPECT_GT(interior, 1e-6 * scale) << "declared failure did not happen";
+  else
+    EXPECT_LT(interior, 1e-12 * scale);
 }
 
 TEST_P(EveryMethod, ForcesHaveNoResultantAndNoMoment) {
@@ -68,7 +75,11 @@ TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
   Bench b(GetParam(), "spinning_block", 4);
   if (!b.model->has_potential()) {
     // The declared failure: the stabilisation force does work that no energy accounts for.
-    EXPECT_EQ(scene::MethodRegistry::instance().find(GetParam().method).info().cannot.count("potential"), 1u);
+    EXPECT_EQ(scene::MethodRegistry::instance()
+                  .find(GetParam().method)
+                  .info()
+                  .cannot.count("potential"),
+              1u);
     return;
   }
   const Column u = b.random_displacement();
@@ -77,7 +88,9 @@ TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
   std::mt19937_64 generator(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 8; ++trial) {
-    const Column d = b.column([&](Index) { return Vec3(uniform(generator), uniform(generator), uniform(generator)); });
+    const Column d = b.column([&](Index) {
+      return Vec3(uniform(generator), uniform(generator), uniform(generator));
+    });
     double power = 0;
     for (std::size_t k = 0; k < d.size(); ++k) power -= f[k] * d[k];
     // Fourth-order difference: truncation and round-off both near 1e-10 of the force's scale.
@@ -88,7 +101,8 @@ TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
       return e.internal + e.stabilisation;
     };
     const double s = 1e-4 * b.body.h;
-    const double slope = (8 * (energy(s) - energy(-s)) - (energy(2 * s) - energy(-2 * s))) / (12 * s);
+    const double slope =
+        (8 * (energy(s) - energy(-s)) - (energy(2 * s) - energy(-2 * s))) / (12 * s);
     EXPECT_NEAR(slope, power, 1e-9 * largest * norm(d));
   }
 }
@@ -100,11 +114,15 @@ TEST_P(EveryMethod, TangentIsTheDerivativeOfTheForce) {
     const Eigen::SparseMatrix<double> K = b.model->tangent(u);
     ASSERT_EQ(K.rows(), b.body.n * b.body.dim);
     if (b.model->has_potential()) {
-      EXPECT_LT(Eigen::SparseMatrix<double>(K - Eigen::SparseMatrix<double>(K.transpose())).norm(), 1e-12 * K.norm());
+      EXPECT_LT(
+          Eigen::SparseMatrix<double>(K - Eigen::SparseMatrix<double>(K.transpose())).norm(),
+          1e-12 * K.norm());
     }
     std::mt19937_64 generator(17);
     std::uniform_real_distribution<double> uniform(-1, 1);
-    const Column d = b.column([&](Index) { return Vec3(uniform(generator), uniform(generator), uniform(generator)); });
+    const Column d = b.column([&](Index) {
+      return Vec3(uniform(generator), uniform(generator), uniform(generator));
+    });
     Eigen::VectorXd direction(K.cols());
     const double s = 1e-5 * b.body.h;
     Column plus = u, minus = u;
@@ -129,7 +147,8 @@ TEST_P(EveryMethod, ThreadsDoNotChangeABit) {
   const Column one = b.force(u, 1);
   for (const int threads : {2, 3}) {
     const Column other = b.force(u, threads);
-    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0) << threads << " threads";
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0)
+        << threads << " threads";
   }
 }
 
@@ -153,8 +172,10 @@ TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
   Bench other(GetParam(), "spinning_block", 5);
   const Body renumbered = make_body(b.problem, shuffled);
   for (Index a = 0; a < b.body.n; ++a) ASSERT_EQ(renumbered.position(a), b.body.position(a));
-  const auto& method = dynamic_cast<const ParticleMethod&>(scene::MethodRegistry::instance().find(GetParam().method));
-  const scene::Settings settings(GetParam().method, method.info().parameters, GetParam().settings);
+  const auto& method = dynamic_cast<const ParticleMethod&>(
+      scene::MethodRegistry::instance().find(GetParam().method));
+  const scene::Settings settings(GetParam().method, method.info().parameters,
+                                 GetParam().settings);
   const auto model = method.make_model(renumbered, b.problem, settings, b.executor);
   Column g = b.zeros();
   model->forces(u, b.zeros(), g, b.executor);
@@ -164,7 +185,8 @@ TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
 
 TEST_P(EveryMethod, InvertedParticleIsReported) {
   Bench b(GetParam(), "spinning_block", 4);
-  const Column u = b.column([&](Index a) { return Vec3(-2 * b.body.position(a)[0], 0, 0); });  // mirrored: det F = -1
+  const Column u = b.column(
+      [&](Index a) { return Vec3(-2 * b.body.position(a)[0], 0, 0); });  // mirrored: det F = -1
   Column f = b.zeros();
   try {
     b.model->forces(u, b.zeros(), f, b.executor);

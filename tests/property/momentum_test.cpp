@@ -1,4 +1,5 @@
-// Conservation over a long run of a free, spinning, deforming body, for every registered particle method.
+// Conservation over a long run of a free, spinning, deforming body, for every registered
+// particle method.
 
 #include "tests/property/bodies.hpp"
 
@@ -33,7 +34,8 @@ TEST_P(EveryMethod, MomentaStayOverTenThousandSteps) {
 TEST_P(EveryMethod, EnergyDriftIsOfSecondOrderInTheStep) {
   const auto& cannot = scene::MethodRegistry::instance().find(GetParam().method).info().cannot;
   const scene::Problem problem = scene::read_problem("spinning_block");
-  const scene::Result coarse = run(GetParam(), problem, 1e-3), fine = run(GetParam(), problem, 5e-4);
+  const scene::Result coarse = run(GetParam(), problem, 1e-3),
+                      fine = run(GetParam(), problem, 5e-4);
   const Bench b(GetParam(), "spinning_block", 4);
   if (!b.model->has_potential()) {
     EXPECT_EQ(cannot.count("potential"), 1u);

@@ -65,15 +65,19 @@ TEST_P(GradientVectors, SumToZeroOffTheBoundary) {  // (29), (31): B_aa = 0 ther
 TEST_P(GradientVectors, AreAntisymmetricUnlessBothEndsAreOnTheBoundary) {  // (30)
   int surface_bonds_that_differ = 0;
   for (const Bond& bond : bonds) {
-    const bool both = body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
-    if (!both) EXPECT_EQ(bond.B_ab, -bond.B_ba);
-    else surface_bonds_that_differ += (bond.B_ab + bond.B_ba).norm() > 1e-6 * bond.B_ab.norm();
+    const bool both =
+        body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
+    if (!both)
+      EXPECT_EQ(bond.B_ab, -bond.B_ba);
+    else
+      surface_bonds_that_differ += (bond.B_ab + bond.B_ba).norm() > 1e-6 * bond.B_ab.norm();
   }
   EXPECT_GT(surface_bonds_that_differ, 0);
 }
 
-/// (27): B_ab = 1/(n (n+1)) sum of the area vectors of the cluster's faces at b; the faces of C_a are those opposite to a in
-/// each simplex at a, and, for a on the boundary, the boundary facets at a.
+/// (27): B_ab = 1/(n (n+1)) sum of the area vectors of the cluster's faces at b; the faces of
+/// C_a are those opposite to a in each simplex at a, and, for a on the boundary, the boundary
+/// facets at a.
 TEST_P(GradientVectors, EqualTheSumOverFacesOfTheCluster) {
   const int n = body.dim, nv = n + 1;
   std::map<std::pair<Index, Index>, Vec3> by_faces;
@@ -82,10 +86,12 @@ TEST_P(GradientVectors, EqualTheSumOverFacesOfTheCluster) {
       const Vec3 e = body.position(v[1]) - body.position(v[0]);
       return Vec3(e[1], -e[0], 0);
     }
-    return Vec3(0.5 * (body.position(v[1]) - body.position(v[0])).cross(body.position(v[2]) - body.position(v[0])));
+    return Vec3(0.5 * (body.position(v[1]) - body.position(v[0]))
+                          .cross(body.position(v[2]) - body.position(v[0])));
   };
   const auto add_face = [&](Index a, const Index* v) {
-    for (int k = 0; k < n; ++k) by_faces.try_emplace({a, v[k]}, Vec3::Zero()).first->second += area(v) / (n * nv);
+    for (int k = 0; k < n; ++k)
+      by_faces.try_emplace({a, v[k]}, Vec3::Zero()).first->second += area(v) / (n * nv);
   };
   const Triangulation& t = body.triangulation;
   for (std::size_t s = 0; s < t.size(); ++s) {
@@ -102,12 +108,15 @@ TEST_P(GradientVectors, EqualTheSumOverFacesOfTheCluster) {
   }
   const double scale = std::pow(body.h, n - 1) * body.thickness;
   for (const Bond& bond : bonds) {
-    EXPECT_LT((bond.B_ab - by_faces.at({bond.a, bond.b}) * body.thickness).norm(), 1e-13 * scale);
-    EXPECT_LT((bond.B_ba - by_faces.at({bond.b, bond.a}) * body.thickness).norm(), 1e-13 * scale);
+    EXPECT_LT((bond.B_ab - by_faces.at({bond.a, bond.b}) * body.thickness).norm(),
+              1e-13 * scale);
+    EXPECT_LT((bond.B_ba - by_faces.at({bond.b, bond.a}) * body.thickness).norm(),
+              1e-13 * scale);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GradientVectors, testing::Values("swinging_cube", "cooks_membrane", "spinning_block"));
+INSTANTIATE_TEST_SUITE_P(Scenes, GradientVectors,
+                         testing::Values("swinging_cube", "cooks_membrane", "spinning_block"));
 
 TEST(BondBlocks, KeepEveryBondOnceInsideAndTwiceAcross) {
   const scene::Problem problem = scene::read_problem("swinging_cube");

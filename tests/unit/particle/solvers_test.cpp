@@ -17,12 +17,14 @@ namespace {
 class Oscillators final : public ForceModel {
  public:
   Oscillators(const Body& body, std::vector<double> k) : ForceModel(body), m_k(std::move(k)) {}
-  void forces(std::span<const double> u, std::span<const double>, std::span<double> f, const Executor&) override {
+  void forces(std::span<const double> u, std::span<const double>, std::span<double> f,
+              const Executor&) override {
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = -m_k[i / m_body.stride] * u[i];
   }
   Energies energies(std::span<const double> u, const Executor&) override {
     Energies e;
-    for (std::size_t i = 0; i < u.size(); ++i) e.internal += 0.5 * m_k[i / m_body.stride] * u[i] * u[i];
+    for (std::size_t i = 0; i < u.size(); ++i)
+      e.internal += 0.5 * m_k[i / m_body.stride] * u[i] * u[i];
     return e;
   }
   void gradients(std::span<const double>, std::span<Mat3> H) override {
@@ -35,9 +37,12 @@ class Oscillators final : public ForceModel {
   std::vector<double> m_k;
 };
 
-scene::Problem free_block(const std::vector<scene::Override>& set = {}) { return scene::read_problem("spinning_block", set); }
+scene::Problem free_block(const std::vector<scene::Override>& set = {}) {
+  return scene::read_problem("spinning_block", set);
+}
 
-/// Runs one oscillator frequency for `T` seconds from rest at u = 1e-3 and returns its displacement at the end.
+/// Runs one oscillator frequency for `T` seconds from rest at u = 1e-3 and returns its
+/// displacement at the end.
 double oscillate(double omega, double damping, double dt, double T) {
   scene::Problem problem = free_block({{"initial.velocity", "[\"0\", \"0\", \"0\"]"},
                                        {"initial.displacement", "[\"1e-3\", \"0\", \"0\"]"}});
@@ -63,15 +68,18 @@ double oscillate(double omega, double damping, double dt, double T) {
 
 TEST(Leapfrog, IsOfSecondOrderOnAnOscillator) {
   const double omega = 3, T = 5, exact = 1e-3 * std::cos(omega * T);
-  const double coarse = std::abs(oscillate(omega, 0, 0.02, T) - exact), fine = std::abs(oscillate(omega, 0, 0.01, T) - exact);
+  const double coarse = std::abs(oscillate(omega, 0, 0.02, T) - exact),
+               fine = std::abs(oscillate(omega, 0, 0.01, T) - exact);
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
   EXPECT_LT(fine, 1e-6);
 }
 
 TEST(Leapfrog, DampsAtTheRateAskedFor) {
   const double omega = 3, c = 0.8, T = 4, damped = std::sqrt(omega * omega - 0.25 * c * c);
-  const double exact = 1e-3 * std::exp(-0.5 * c * T) * (std::cos(damped * T) + 0.5 * c / damped * std::sin(damped * T));
-  const double coarse = std::abs(oscillate(omega, c, 0.02, T) - exact), fine = std::abs(oscillate(omega, c, 0.01, T) - exact);
+  const double exact = 1e-3 * std::exp(-0.5 * c * T) *
+                       (std::cos(damped * T) + 0.5 * c / damped * std::sin(damped * T));
+  const double coarse = std::abs(oscillate(omega, c, 0.02, T) - exact),
+               fine = std::abs(oscillate(omega, c, 0.01, T) - exact);
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
 }
 
@@ -83,7 +91,8 @@ TEST(StableStep, FindsTheHighestFrequency) {
   Oscillators model(body, k);
   const Executor executor(1);
   const Constraints constraints(problem, body);
-  const double omega = SpectralRadius(model, constraints, executor).omega_max(Column(body.X.size(), 0.0));
+  const double omega =
+      SpectralRadius(model, constraints, executor).omega_max(Column(body.X.size(), 0.0));
   EXPECT_LE(omega, 10 * (1 + 1e-9));
   EXPECT_GT(omega, 10 * (1 - 5e-3));
 }
@@ -105,8 +114,10 @@ TEST(StableStep, AgreesWithTheDenseEigenvaluesOfTheTangent) {
     K.row(3 * dof.particle + dof.component).setZero();
     K.col(3 * dof.particle + dof.component).setZero();
   }
-  const double exact = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().maxCoeff());
-  const double omega = SpectralRadius(model, constraints, executor).omega_max(Column(body.X.size(), 0.0));
+  const double exact =
+      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().maxCoeff());
+  const double omega =
+      SpectralRadius(model, constraints, executor).omega_max(Column(body.X.size(), 0.0));
   EXPECT_LE(omega, exact * (1 + 1e-6));
   EXPECT_GT(omega, exact * (1 - 1e-2));
 }
@@ -147,7 +158,8 @@ struct StaticRun {
   StaticsOutcome outcome;
 
   StaticRun(scene::Problem p, double resolution, double perturb)
-      : problem(std::move(p)), body(make_body(problem, problem.reference_length / resolution, perturb, 2)),
+      : problem(std::move(p)),
+        body(make_body(problem, problem.reference_length / resolution, perturb, 2)),
         model(body, problem, {}), constraints(problem, body), loads(problem, body),
         recorder(problem, model, constraints, executor, {}, false) {}
 
@@ -167,7 +179,8 @@ struct StaticRun {
 
 TEST(Statics, RefusesABodyThatCanMoveRigidly) {
   scene::Problem problem = scene::read_problem("patch_test_c");
-  std::erase_if(problem.boundaries, [](const auto& bc) { return bc.kind != scene::BoundaryKind::traction; });
+  std::erase_if(problem.boundaries,
+                [](const auto& bc) { return bc.kind != scene::BoundaryKind::traction; });
   StaticRun run(problem, 3, 0.2);
   try {
     run.solve();
@@ -178,9 +191,11 @@ TEST(Statics, RefusesABodyThatCanMoveRigidly) {
   }
 }
 
-/// Finite homogeneous strain by prescribed motion of the whole surface: the state inside must follow, for large steps too.
+/// Finite homogeneous strain by prescribed motion of the whole surface: the state inside must
+/// follow, for large steps too.
 TEST(Statics, ReachesFiniteHomogeneousStrainInOneStep) {
-  scene::Problem problem = scene::read_problem("patch_test_b", {{"parameters.u0", "0.1"}, {"load_steps", "1"}});
+  scene::Problem problem =
+      scene::read_problem("patch_test_b", {{"parameters.u0", "0.1"}, {"load_steps", "1"}});
   StaticRun run(problem, 4, 0.2);
   const State s = run.solve();
   for (Index a = 0; a < run.body.n; ++a) {
@@ -190,8 +205,10 @@ TEST(Statics, ReachesFiniteHomogeneousStrainInOneStep) {
 }
 
 TEST(Statics, WorkOfPrescribedMotionIsTheStoredEnergy) {
-  // 40 steps of the trapezoidal rule on a smooth path: error about 1/40^2 of the small nonlinear part.
-  scene::Problem problem = scene::read_problem("patch_test_b", {{"parameters.u0", "0.02"}, {"load_steps", "40"}});
+  // 40 steps of the trapezoidal rule on a smooth path: error about 1/40^2 of the small
+  // nonlinear part.
+  scene::Problem problem =
+      scene::read_problem("patch_test_b", {{"parameters.u0", "0.02"}, {"load_steps", "40"}});
   StaticRun run(problem, 3, 0.2);
   const State s = run.solve();
   const Energies e = run.model.energies(s.u, run.executor);

@@ -36,13 +36,16 @@ void compare(const scene::Problem& problem, double magnitude) {
         }
       }
     }
-    const unsigned bad = stress_of_group<Dim, Law>(kernel.lame, count, inverse_V.data(), H.data(), P.data());
+    const unsigned bad =
+        stress_of_group<Dim, Law>(kernel.lame, count, inverse_V.data(), H.data(), P.data());
     EXPECT_EQ(bad, 0u);
     for (int a = 0; a < count; ++a) {
       const Mat3 expected = law.stress(reference[a]);
       const Mat3 difference = tensor_at(P, Dim, a) - expected;
-      // Relative to the stress itself: the laws keep their accuracy down to the smallest strains.
-      EXPECT_LT(difference.topLeftCorner<Dim, Dim>().norm(), 4e-15 * expected.norm()) << "strain " << magnitude;
+      // Relative to the stress itself: the laws keep their accuracy down to the smallest
+      // strains.
+      EXPECT_LT(difference.topLeftCorner<Dim, Dim>().norm(), 4e-15 * expected.norm())
+          << "strain " << magnitude;
       EXPECT_EQ(tensor_at(H, Dim, a), reference[a]);
     }
   }
@@ -56,8 +59,10 @@ TEST_P(StressKernel, AgreesWithTheReferenceLaw) {
   problem.material.mu = 1.7e9;
   for (const double magnitude : {1e-12, 1e-6, 1e-3, 0.05, 0.3}) {
     with_law(kernel_material(problem).law, [&](auto law) {
-      if (problem.dim() == 3) compare<3, decltype(law)::value>(problem, magnitude);
-      else compare<2, decltype(law)::value>(problem, magnitude);
+      if (problem.dim() == 3)
+        compare<3, decltype(law)::value>(problem, magnitude);
+      else
+        compare<2, decltype(law)::value>(problem, magnitude);
     });
   }
 }
@@ -67,6 +72,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{scene::MaterialModel::neo_hookean, Dimension::three_d},
                     Case{scene::MaterialModel::neo_hookean, Dimension::plane_strain},
                     Case{scene::MaterialModel::neo_hookean, Dimension::plane_stress},
+                    Case{scene::MaterialModel::neo_hookean_isochoric, Dimension::three_d},
+                    Case{scene::MaterialModel::neo_hookean_isochoric, Dimension::plane_strain},
+                    Case{scene::MaterialModel::neo_hookean_isochoric, Dimension::plane_stress},
                     Case{scene::MaterialModel::st_venant_kirchhoff, Dimension::three_d},
                     Case{scene::MaterialModel::st_venant_kirchhoff, Dimension::plane_strain},
                     Case{scene::MaterialModel::st_venant_kirchhoff, Dimension::plane_stress}));
@@ -75,11 +83,17 @@ TEST(StressKernelFailure, MarksTheLanesThatAreInvertedOrNotANumber) {
   const LameConstants c{1, 1};
   Column H(stress_width * 12, 0.0), P = H;
   const std::vector<double> inverse_V(stress_width, 1.0);
-  H[2 * 12] = -1.5;           // particle 2: F_11 = -0.5
-  H[5 * 12] = std::nan("");   // particle 5
-  const unsigned bad =
-      stress_of_group<3, StressLaw::neo_hookean>(c, stress_width, inverse_V.data(), H.data(), P.data());
+  H[2 * 12] = -1.5;          // particle 2: F_11 = -0.5
+  H[5 * 12] = std::nan("");  // particle 5
+  const unsigned bad = stress_of_group<3, StressLaw::neo_hookean>(
+      c, stress_width, inverse_V.data(), H.data(), P.data());
   EXPECT_EQ(bad, (1u << 2) | (1u << 5));
+}
+
+TEST(ExpKernel, KeepsRelativeAccuracy) {
+  for (const double x : {-0.2, -0.1, -1e-3, -1e-9, 0.0, 1e-15, 1e-7, 1e-2, 0.15, 0.2}) {
+    EXPECT_NEAR(exp_near_zero(x) / std::exp(x), 1, 5e-16) << x;
+  }
 }
 
 TEST(LogKernel, KeepsRelativeAccuracy) {

@@ -1,4 +1,5 @@
-// Triangulations of convex and non-convex bodies: volumes add up, the boundary is reproduced, else a clear error.
+// Triangulations of convex and non-convex bodies: volumes add up, the boundary is reproduced,
+// else a clear error.
 
 #include "particle/core/body.hpp"
 #include "scene/errors.hpp"
@@ -19,11 +20,12 @@ scene::Problem problem_on(const std::string& geo, const std::string& dimension) 
                       testing::UnitTest::GetInstance()->current_test_info()->name();
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "body.geo") << geo;
-  std::ofstream(folder / "scene.toml") << "title = \"t\"\nsource = \"test\"\ndimension = \"" << dimension
-                                       << "\"\ngeometry = \"body.geo\"\nreference_length = \"1 m\"\nend_time = \"1 s\"\n"
-                                          "layout = \"unstructured\"\n"
-                                          "[material]\nmodel = \"neo-hookean\"\ndensity = \"1 kg/m^3\"\n"
-                                          "youngs_modulus = \"1 Pa\"\npoissons_ratio = 0.3\n";
+  std::ofstream(folder / "scene.toml")
+      << "title = \"t\"\nsource = \"test\"\ndimension = \"" << dimension
+      << "\"\ngeometry = \"body.geo\"\nreference_length = \"1 m\"\nend_time = \"1 s\"\n"
+         "layout = \"unstructured\"\n"
+         "[material]\nmodel = \"neo-hookean\"\ndensity = \"1 kg/m^3\"\n"
+         "youngs_modulus = \"1 Pa\"\npoissons_ratio = 0.3\n";
   return scene::read_problem((folder / "scene.toml").string());
 }
 
@@ -41,7 +43,8 @@ double volume(const Triangulation& t) {
 }
 
 TEST(Triangulation, FillsANonConvexPlaneBody) {
-  const scene::Problem problem = problem_on(std::string(l_shape) + "Physical Surface(\"body\") = {1};", "plane strain");
+  const scene::Problem problem =
+      problem_on(std::string(l_shape) + "Physical Surface(\"body\") = {1};", "plane strain");
   const Body body = make_body(problem, 0.2, 0.2, 4);
   EXPECT_NEAR(volume(body.triangulation), 3.0, 1e-12);
   double V = 0;
@@ -50,13 +53,15 @@ TEST(Triangulation, FillsANonConvexPlaneBody) {
 }
 
 TEST(Triangulation, FillsANonConvexSolidAndKeepsItsFaces) {
-  const std::string geo = std::string(l_shape) +
-                          "out[] = Extrude {0, 0, 0.6} { Surface{1}; };\n"
-                          "Physical Volume(\"body\") = {out[1]};\nPhysical Surface(\"bottom\") = {1};\n";
+  const std::string geo =
+      std::string(l_shape) +
+      "out[] = Extrude {0, 0, 0.6} { Surface{1}; };\n"
+      "Physical Volume(\"body\") = {out[1]};\nPhysical Surface(\"bottom\") = {1};\n";
   const scene::Problem problem = problem_on(geo, "3D");
   const Body body = make_body(problem, 0.2, 0.1, 4);
   EXPECT_NEAR(volume(body.triangulation), 1.8, 1e-11);
-  // Every particle of the surface mesh is on the triangulation's boundary and the other way round.
+  // Every particle of the surface mesh is on the triangulation's boundary and the other way
+  // round.
   std::vector<char> on(body.n, 0);
   for (const Index node : body.mesh.facets) on[body.particle[node]] = 1;
   for (Index a = 0; a < body.n; ++a) EXPECT_EQ(on[a], body.triangulation.on_boundary[a]);
@@ -75,7 +80,8 @@ TEST(Triangulation, FillsANonConvexSolidAndKeepsItsFaces) {
 }
 
 TEST(Triangulation, RefusesABodyThatItsParticlesDoNotResolve) {
-  // A slot much narrower than the spacing along its sides: the Delaunay triangulation crosses it.
+  // A slot much narrower than the spacing along its sides: the Delaunay triangulation crosses
+  // it.
   const std::string geo = R"(DefineConstant[ h = 0.5 ];
 Point(1) = {0, 0, 0, h}; Point(2) = {2, 0, 0, h}; Point(3) = {2, 1, 0, h}; Point(4) = {0.1, 1, 0, h};
 Point(5) = {0.1, 1.02, 0, h}; Point(6) = {2, 1.02, 0, h}; Point(7) = {2, 2, 0, h}; Point(8) = {0, 2, 0, h};
@@ -95,7 +101,8 @@ Physical Surface("body") = {1};
 }
 
 TEST(SweepOrder, GoesPlaneByPlaneAlongTheLongestAxis) {
-  const scene::Problem problem = scene::read_problem("spinning_block", {{"parameters.B", "3 m"}});
+  const scene::Problem problem =
+      scene::read_problem("spinning_block", {{"parameters.B", "3 m"}});
   const Body body = make_body(problem, 0.25, 0.2, 4);
   for (Index a = 1; a < body.n; ++a) {
     EXPECT_GE(body.position(a)[1], body.position(a - 1)[1] - 0.6 * body.h);
