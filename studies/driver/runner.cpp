@@ -102,18 +102,24 @@ Plan make_plan(const Study& study, const RunnerOptions& options) {
   return plan;
 }
 
-/// Reads what a finished run left; `how` says how it ended when it was computed now.
-void read_row(Row& row, const fs::path& folder, const ChildExit& how) {
+/// Reads what a finished run left; `how` says how it ended when it was computed now, `message`
+/// what it said.
+void read_row(Row& row, const fs::path& folder, const ChildExit& how,
+              const std::string& message) {
+  if (how.signal != 0) {
+    row.error = fmt::format("ended by signal {}", how.signal);
+    return;
+  }
+  if (how.code != 0 && how.code != 3) {
+    row.error = fmt::format("ended with exit code {}: {}", how.code, message);
+    return;
+  }
   try {
     row.summary = nlohmann::json::parse(read_text(folder / "summary.json"));
     row.error = row.summary.value("error", "");
   } catch (const nlohmann::json::exception&) {
-    row.error = "no readable summary.json";
+    row.error = "no readable summary.json: " + message;
   }
-  if (how.signal != 0)
-    row.error = fmt::format("ended by signal {}", how.signal);
-  else if (how.code != 0 && row.error.empty())
-    row.error = fmt::format("ended with exit code {}", how.code);
 }
 
 /// Children at work, a slot each.
@@ -178,7 +184,7 @@ class Crew {
       throw InputError(m_study.cases[row.case_index].where, "case", job.what, message);
     }
     if (scene::interrupted()) return;  // stopped before its end
-    read_row(row, job.folder, how);
+    read_row(row, job.folder, how, message);
     m_done[job.row] = true;
     ++m_result.computed;
     if (how.signal == 0 && (how.code == 0 || how.code == 3)) m_cache.store(job.key, job.folder);
@@ -232,7 +238,7 @@ RunnerResult run_cases(const Study& study, const RunnerOptions& options) {
       missing.push_back(job);
       continue;
     }
-    read_row(plan.rows[job.row], job.folder, {});
+    read_row(plan.rows[job.row], job.folder, {}, "");
     crew.mark_done(job.row);
     ++result.reused;
   }

@@ -119,7 +119,8 @@ double display_factor(const std::string& unit, const SourcePosition& where) {
   if (found != factors.end()) return found->second;
   std::vector<std::string> words;
   for (const auto& [name, factor] : factors) words.push_back(name);
-  throw InputError(where, "claim.unit", scene::in_quotes(unit), scene::allowed_words(unit, words));
+  throw InputError(where, "claim.unit", scene::in_quotes(unit),
+                   scene::allowed_words(unit, words));
 }
 
 }  // namespace concord::studies
