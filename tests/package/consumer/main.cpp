@@ -6,7 +6,7 @@
 #include <iostream>
 
 int main() {
-  const auto problem = concord::scene::read_problem("patch_a");
+  const auto problem = concord::scene::read_problem("patch_test_a");
   std::string names;
   for (const auto* method : concord::scene::MethodRegistry::instance().all())
     names += (names.empty() ? "" : " ") + method->info().name;
