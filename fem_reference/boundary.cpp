@@ -4,9 +4,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace concord::fem {
 namespace {
@@ -39,14 +37,12 @@ template <int dim>
 Prescribed<dim>::Prescribed(const scene::Problem& problem,
                             const Discretisation<dim>& discretisation)
     : m_problem(problem), m_discretisation(discretisation), m_mask(discretisation.dofs(), 0) {
-  std::vector<int> entry_of_dof(discretisation.dofs(), -1);
   for (const BoundaryCondition& bc : problem.boundaries) {
-    if (bc.kind != BoundaryKind::traction) add(bc, entry_of_dof);
+    if (bc.kind != BoundaryKind::traction) add(bc);
   }
 }
 
-template <int dim>
-void Prescribed<dim>::add(const BoundaryCondition& bc, std::vector<int>& entry_of_dof) {
+template <int dim> void Prescribed<dim>::add(const BoundaryCondition& bc) {
   const scene::Mesh& mesh = m_discretisation.mesh();
   const bool plane =
       bc.kind == BoundaryKind::symmetric || bc.kind == BoundaryKind::antisymmetric;
@@ -56,15 +52,10 @@ void Prescribed<dim>::add(const BoundaryCondition& bc, std::vector<int>& entry_o
     if (!m_discretisation.used(node)) continue;
     for (int i = 0; i < dim; ++i) {
       if (!given[i]) continue;
-      const Entry entry{m_discretisation.dof(node, i), node, i, &bc};
-      int& known = entry_of_dof[entry.dof];
-      if (known >= 0) {
-        require_same(m_entries[known], entry);
-        continue;
-      }
-      known = static_cast<int>(m_entries.size());
-      m_mask[entry.dof] = 1;
-      m_entries.push_back(entry);
+      const unsigned dof = m_discretisation.dof(node, i);
+      if (m_mask[dof] != 0) continue;  // given by another group too: make_mesh saw them agree
+      m_mask[dof] = 1;
+      m_entries.push_back({dof, node, i, &bc});
     }
   }
 }
@@ -79,28 +70,6 @@ template <int dim> std::vector<double> Prescribed<dim>::values(double t) const {
   std::vector<double> out(m_entries.size());
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = value(m_entries[k], t);
   return out;
-}
-
-/// Compares at the start, at a third and at the end; 1e-9 relative and 1e-14 of the reference
-/// length absolute are above round-off and below anything meant.
-template <int dim>
-void Prescribed<dim>::require_same(const Entry& first, const Entry& second) const {
-  for (const double part : {0.0, 1.0 / 3, 1.0}) {
-    const double t = part * m_problem.end_time;
-    const double a = value(first, t), b = value(second, t);
-    const double allowed =
-        1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-14 * m_problem.reference_length;
-    if (std::abs(a - b) <= allowed) continue;
-    const Vec3& X = m_discretisation.mesh().nodes[second.node];
-    throw InputError(
-        second.condition->where, "boundary",
-        fmt::format(
-            "groups \"{}\" and \"{}\" prescribe different displacements u_{} = {:g} m and "
-            "{:g} m at their common point ({:g}, {:g}, {:g}), t = {:g}",
-            first.condition->group, second.condition->group, "xyz"[second.component], a, b,
-            X[0], X[1], X[2], t),
-        "the same value where groups meet, or the component left \"free\" in one of them");
-  }
 }
 
 /// Rank of the rigid motions seen at the given unknowns: the smallest eigenvalue of their Gram

@@ -12,7 +12,7 @@ namespace concord::fem {
 /// curves, surfaces and volumes all act on the nodes of their closure.
 template <int dim> class Prescribed {
  public:
-  /// Throws InputError, naming both groups, where two conditions disagree on a shared node.
+  /// Conditions that disagree where groups meet were refused by scene::make_mesh.
   Prescribed(const scene::Problem& problem, const Discretisation<dim>& discretisation);
 
   std::size_t size() const { return m_entries.size(); }
@@ -31,9 +31,8 @@ template <int dim> class Prescribed {
     int component;
     const scene::BoundaryCondition* condition;
   };
-  void add(const scene::BoundaryCondition& condition, std::vector<int>& entry_of_dof);
+  void add(const scene::BoundaryCondition& condition);
   double value(const Entry& entry, double t) const;
-  void require_same(const Entry& first, const Entry& second) const;
 
   const scene::Problem& m_problem;
   const Discretisation<dim>& m_discretisation;

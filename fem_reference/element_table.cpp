@@ -12,11 +12,13 @@ template <int dim>
 ElementTable<dim>::ElementTable(const Discretisation<dim>& discretisation,
                                 const Hyperelastic<dim>& law, double thickness)
     : m_discretisation(discretisation), m_law(law), m_thickness(thickness) {
+  const bool simplex = discretisation.mesh().shape == scene::CellShape::simplex;
   const dealii::FESystem<dim>& element = discretisation.element();
   const dealii::FiniteElement<dim>& scalar = element.base_element(0);
-  dealii::FEValues<dim> values(discretisation.mapping(), scalar,
-                               discretisation.gauss(discretisation.degree() + 1),
-                               dealii::update_gradients | dealii::update_JxW_values);
+  dealii::FEValues<dim> values(
+      discretisation.mapping(), scalar,
+      discretisation.gauss(discretisation.degree() + (simplex ? 0 : 1)),
+      dealii::update_gradients | dealii::update_JxW_values);
   m_nodes = scalar.n_dofs_per_cell();
   m_points = values.n_quadrature_points;
   m_cells = discretisation.triangulation().n_active_cells();
@@ -80,24 +82,18 @@ bool ElementTable<dim>::cell_force(std::size_t cell, const std::vector<double>& 
 
 template <int dim> long ElementTable<dim>::force(const Vector& u, Vector& f) const {
   std::vector<double> local, out;
+  double squares = 0;
   f = 0;
   for (std::size_t c = 0; c < m_cells; ++c) {
     gather(c, u, local);
     if (!cell_force(c, local, out)) return static_cast<long>(c);
-    for (unsigned k = 0; k < out.size(); ++k) f[m_dofs[c * out.size() + k]] += out[k];
+    for (unsigned k = 0; k < out.size(); ++k) {
+      f[m_dofs[c * out.size() + k]] += out[k];
+      squares += out[k] * out[k];
+    }
   }
+  m_force_norm = std::sqrt(squares);
   return -1;
-}
-
-template <int dim> double ElementTable<dim>::element_force_norm(const Vector& u) const {
-  std::vector<double> local, out;
-  double sum = 0;
-  for (std::size_t c = 0; c < m_cells; ++c) {
-    gather(c, u, local);
-    if (!cell_force(c, local, out)) return std::nan("");
-    for (const double f : out) sum += f * f;
-  }
-  return std::sqrt(sum);
 }
 
 template <int dim> double ElementTable<dim>::energy(const Vector& u) const {
@@ -166,6 +162,7 @@ long ElementTable<dim>::tangent(const Vector& u, Vector& f,
                                 dealii::SparseMatrix<double>& K) const {
   const unsigned n = m_nodes * dim;
   std::vector<double> local, out, matrix;
+  double squares = 0;
   f = 0;
   K = 0;
   for (std::size_t c = 0; c < m_cells; ++c) {
@@ -174,9 +171,11 @@ long ElementTable<dim>::tangent(const Vector& u, Vector& f,
     const unsigned* dofs = &m_dofs[c * n];
     for (unsigned r = 0; r < n; ++r) {
       f[dofs[r]] += out[r];
+      squares += out[r] * out[r];
       K.add(dofs[r], n, dofs, &matrix[static_cast<std::size_t>(r) * n]);
     }
   }
+  m_force_norm = std::sqrt(squares);
   return -1;
 }
 

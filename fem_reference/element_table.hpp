@@ -11,9 +11,9 @@
 
 namespace concord::fem {
 
-/// Quadrature with p+1 points a direction: exact for the stiffness of affine elements on
-/// hypercubes; on simplices exact to degree 2p-1 >= 2(p-1). Memory: cells x points x nodes x
-/// dim doubles (17 kB a Q2 hexahedron, 1 kB a P2 tetrahedron).
+/// Quadrature, exact for the linear stiffness of affine elements: p+1 Gauss points a direction
+/// on hypercubes; on simplices the rule exact to degree 2p-1 (1 point for P1; 6 or 8 for P2).
+/// Memory: cells x points x nodes x dim doubles (17 kB a Q2 hexahedron, 1 kB a P2 tetrahedron).
 template <int dim> class ElementTable : public InternalForce {
  public:
   ElementTable(const Discretisation<dim>& discretisation, const Hyperelastic<dim>& law,
@@ -24,9 +24,9 @@ template <int dim> class ElementTable : public InternalForce {
   /// K = df/du (consistent, added to nothing: K is overwritten) together with f; returns as
   /// force().
   long tangent(const Vector& u, Vector& f, dealii::SparseMatrix<double>& K) const;
-  /// Norm over all element forces before they are added up: the scale of a residual, which does
-  /// not vanish in equilibrium [N].
-  double element_force_norm(const Vector& u) const;
+  /// Norm over all element forces of the last force() or tangent(), before they were added up:
+  /// the scale of a residual, which does not vanish in equilibrium [N].
+  double element_force_norm() const { return m_force_norm; }
 
   const dealii::SparsityPattern& sparsity() const { return m_sparsity; }
   /// Consistent mass, rho N_a N_b with p+2 points a direction (exact on affine cells).
@@ -56,6 +56,7 @@ template <int dim> class ElementTable : public InternalForce {
   std::vector<double> m_JxW;                       ///< [cell][q], thickness included
   std::vector<unsigned> m_dofs;                    ///< [cell][node][component]
   dealii::SparsityPattern m_sparsity;
+  mutable double m_force_norm = 0;
 };
 
 extern template class ElementTable<2>;

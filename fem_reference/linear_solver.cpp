@@ -1,24 +1,46 @@
 #include "fem_reference/linear_solver.hpp"
 
+#include "scene/errors.hpp"
+
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/sparse_direct.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace concord::fem {
-namespace {
 
-using Vector = dealii::Vector<double>;
+LinearSolver::LinearSolver(const dealii::SparsityPattern& pattern, std::vector<char> given,
+                           bool direct, double relative)
+    : m_given(std::move(given)), m_direct(direct), m_relative(relative) {
+  m_K.reinit(pattern);
+  m_cleared.reinit(pattern);
+}
 
-bool solve_cg(const dealii::SparseMatrix<double>& K, const Vector& b, Vector& x,
-              double relative) {
-  dealii::PreconditionSSOR<dealii::SparseMatrix<double>> ssor;
-  ssor.initialize(K, 1.2);  // between Gauss-Seidel (1) and the over-relaxation of step-8 (1.2)
-  dealii::SolverControl control(std::max<unsigned>(1000, b.size() / 4), relative * b.l2_norm());
+void LinearSolver::ready() {
+  m_factors.reset();
+  m_cleared.copy_from(m_K);
+  m_diagonal = 0;
+  for (unsigned r = 0; r < m_K.m(); ++r) m_diagonal += std::abs(m_K.diag_element(r)) / m_K.m();
+  for (unsigned r = 0; r < m_cleared.m(); ++r) {
+    for (auto entry = m_cleared.begin(r); entry != m_cleared.end(r); ++entry) {
+      const unsigned c = entry->column();
+      if (m_given[r] != 0)
+        entry->value() = r == c ? m_diagonal : 0.0;
+      else if (m_given[c] != 0)
+        entry->value() = 0.0;
+    }
+  }
+}
+
+bool LinearSolver::solve_iteratively(const Vector& b, Vector& x) const {
+  dealii::PreconditionSSOR<Matrix> ssor;
+  ssor.initialize(m_cleared, 1.2);  // the over-relaxation of deal.II's step-8
+  dealii::SolverControl control(std::max<unsigned>(1000, b.size() / 4),
+                                m_relative * b.l2_norm());
   dealii::SolverCG<Vector> cg(control);
   try {
-    cg.solve(K, x, b, ssor);
+    cg.solve(m_cleared, x, b, ssor);
   } catch (const dealii::ExceptionBase&) {
     return false;
   }
@@ -26,40 +48,28 @@ bool solve_cg(const dealii::SparseMatrix<double>& K, const Vector& b, Vector& x,
   return std::isfinite(x.l2_norm()) && x * b > 0;
 }
 
-}  // namespace
-
-void solve_linear(const dealii::SparseMatrix<double>& K, const Vector& b, Vector& x,
-                  bool direct, double relative, long step, double t) {
+void LinearSolver::solve(Vector b, const Vector& jump, Vector& x, long step, double t) {
+  if (jump.linfty_norm() > 0) {
+    Vector lift(b.size());
+    m_K.vmult(lift, jump);
+    b -= lift;
+  }
+  for (unsigned r = 0; r < b.size(); ++r) {
+    if (m_given[r] != 0) b[r] = m_diagonal * jump[r];
+  }
   x.reinit(b.size());
-  if (b.l2_norm() == 0) return;
-  if (!direct && solve_cg(K, b, x, relative)) return;
+  if (b.linfty_norm() == 0) return;
+  if (!m_direct && solve_iteratively(b, x)) return;
   try {
-    dealii::SparseDirectUMFPACK factors;
-    factors.factorize(K);
-    factors.vmult(x, b);
+    if (!m_factors) {
+      m_factors = std::make_unique<dealii::SparseDirectUMFPACK>();
+      m_factors->factorize(m_cleared);
+    }
+    m_factors->vmult(x, b);
   } catch (const dealii::ExceptionBase& error) {
     throw SolveError("singular tangent", step, t, -1, error.get_exc_name());
   }
   if (!std::isfinite(x.l2_norm())) throw SolveError("singular tangent", step, t, -1);
-}
-
-void prescribe(dealii::SparseMatrix<double>& K, Vector& b, const std::vector<char>& given,
-               const Vector& jump) {
-  double diagonal = 0;
-  for (unsigned r = 0; r < K.m(); ++r) diagonal += std::abs(K.diag_element(r));
-  diagonal /= K.m();
-  for (unsigned r = 0; r < K.m(); ++r) {
-    for (auto entry = K.begin(r); entry != K.end(r); ++entry) {
-      const unsigned c = entry->column();
-      if (given[r] != 0) {
-        entry->value() = r == c ? diagonal : 0.0;
-      } else if (given[c] != 0) {
-        b[r] -= entry->value() * jump[c];
-        entry->value() = 0.0;
-      }
-    }
-    if (given[r] != 0) b[r] = diagonal * jump[r];
-  }
 }
 
 }  // namespace concord::fem

@@ -1,22 +1,43 @@
 #pragma once
-// Linear systems of Newton's method and of the consistent mass.
+// Linear systems of Newton's method and of the consistent mass, with given unknowns.
 
-#include "fem_reference/parameters.hpp"
-
+#include <deal.II/lac/sparse_direct.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <memory>
+#include <vector>
+
 namespace concord::fem {
 
-/// Solves K x = b: UMFPACK, or conjugate gradients with SSOR to `relative` |b|. A matrix on
-/// which conjugate gradients fail (not positive definite, beyond a limit point) goes to
-/// UMFPACK. Throws SolveError for a singular matrix, with step and time.
-void solve_linear(const dealii::SparseMatrix<double>& K, const dealii::Vector<double>& b,
-                  dealii::Vector<double>& x, bool direct, double relative, long step, double t);
+/// Solves K x = b at the free unknowns with x = jump at the given ones: rows and columns of the
+/// given unknowns are cleared (b -= K jump first) and their diagonal set to the mean of all, so
+/// that the conditioning stays. One matrix may serve several right-hand sides.
+class LinearSolver {
+ public:
+  using Matrix = dealii::SparseMatrix<double>;
+  using Vector = dealii::Vector<double>;
 
-/// Makes K x = b give x = jump at the given unknowns: b -= K jump, then rows and columns
-/// cleared, their diagonal set to the mean of all diagonals so that the conditioning stays.
-void prescribe(dealii::SparseMatrix<double>& K, dealii::Vector<double>& b,
-               const std::vector<char>& given, const dealii::Vector<double>& jump);
+  /// `direct`: UMFPACK, factorised once a matrix; else conjugate gradients with SSOR to
+  /// `relative` |b|. A matrix on which conjugate gradients fail (not positive definite, as
+  /// beyond a limit point) goes to UMFPACK.
+  LinearSolver(const dealii::SparsityPattern& pattern, std::vector<char> given, bool direct,
+               double relative);
+
+  /// The matrix to fill, given unknowns included; then call ready().
+  Matrix& matrix() { return m_K; }
+  void ready();
+  /// Throws SolveError for a singular matrix, with step and time.
+  void solve(Vector b, const Vector& jump, Vector& x, long step, double t);
+
+ private:
+  bool solve_iteratively(const Vector& b, Vector& x) const;
+
+  Matrix m_K, m_cleared;
+  std::vector<char> m_given;
+  bool m_direct;
+  double m_relative, m_diagonal = 1;
+  std::unique_ptr<dealii::SparseDirectUMFPACK> m_factors;
+};
 
 }  // namespace concord::fem

@@ -1,20 +1,33 @@
 #include "fem_reference/newton.hpp"
 
-#include "fem_reference/linear_solver.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 namespace concord::fem {
 
+namespace {
+
+template <int dim> std::vector<char> mask(const Prescribed<dim>& prescribed, unsigned dofs) {
+  std::vector<char> given(dofs, 0);
+  for (std::size_t k = 0; k < prescribed.size(); ++k) given[prescribed.dof(k)] = 1;
+  return given;
+}
+
+}  // namespace
+
 template <int dim>
 Newton<dim>::Newton(const ElementTable<dim>& table, const Prescribed<dim>& prescribed,
-                    const Options& options, bool direct)
-    : m_table(table), m_prescribed(prescribed), m_options(options), m_direct(direct),
-      m_given(table.sparsity().n_rows(), 0) {
-  for (std::size_t k = 0; k < prescribed.size(); ++k) m_given[prescribed.dof(k)] = 1;
-  m_K.reinit(table.sparsity());
+                    const Options& options, double tolerance, bool direct, double relative)
+    : m_table(table), m_prescribed(prescribed), m_options(options), m_tolerance(tolerance),
+      m_given(mask(prescribed, table.sparsity().n_rows())),
+      m_linear(table.sparsity(), m_given, direct, relative) {}
+
+template <int dim> void Newton<dim>::renew_tangent(State& state, const Inertia* inertia) {
+  check(state, m_table.tangent(state.u, state.internal, m_linear.matrix()));
+  if (inertia != nullptr) m_linear.matrix().add(inertia->factor, *inertia->mass);
+  m_linear.ready();
+  m_has_tangent = true;
 }
 
 template <int dim> void Newton<dim>::check(const State& state, long bad_element) const {
@@ -40,7 +53,7 @@ double Newton<dim>::residual(const State& state, const Inertia* inertia, Vector&
 }
 
 template <int dim> double Newton<dim>::scale(const State& state, const Inertia* inertia) const {
-  double size = m_table.element_force_norm(state.u) + state.external.l2_norm();
+  double size = m_table.element_force_norm() + state.external.l2_norm();
   if (inertia != nullptr) {
     Vector a = state.u, Ma(a.size());
     a -= inertia->predicted;
@@ -71,19 +84,17 @@ double Newton<dim>::backtrack(State& state, const Vector& du, const Inertia* ine
 template <int dim>
 int Newton<dim>::solve(State& state, const std::vector<double>& given, const Inertia* inertia) {
   Vector r(state.u.size()), du(state.u.size()), jump(state.u.size());
-  bool moved = true;
   for (std::size_t k = 0; k < given.size(); ++k) {
     jump[m_prescribed.dof(k)] = given[k] - state.u[m_prescribed.dof(k)];
   }
-  moved = jump.linfty_norm() > 0;
+  bool moved = jump.linfty_norm() > 0, cuts_well = true;
   check(state, m_table.force(state.u, state.internal));
   double norm = residual(state, inertia, r);
   for (int k = 0; k < m_options.max_iterations; ++k) {
-    if (!moved && norm <= m_options.tolerance * scale(state, inertia)) return k;
-    check(state, m_table.tangent(state.u, state.internal, m_K));
-    if (inertia != nullptr) m_K.add(inertia->factor, *inertia->mass);
-    prescribe(m_K, r, m_given, jump);
-    solve_linear(m_K, r, du, m_direct, inertia != nullptr ? 1e-8 : 1e-10, state.step, state.t);
+    if (!moved && norm <= m_tolerance * scale(state, inertia)) return k;
+    const bool fresh = inertia == nullptr || !m_has_tangent || !cuts_well;
+    if (fresh) renew_tangent(state, inertia);
+    m_linear.solve(r, jump, du, state.step, state.t);
     const double before = norm;
     if (k == 0) {
       state.u += du;
@@ -95,10 +106,11 @@ int Newton<dim>::solve(State& state, const std::vector<double>& given, const Ine
     }
     jump = 0;
     moved = false;
-    // Round-off floor: no longer falling, and below 1e4 tolerances (1e-8 by default).
-    if (k > 0 && norm > 0.5 * before) {
+    cuts_well = norm <= chord_cut * before;
+    // Round-off floor: no longer falling, and below 1e4 tolerances.
+    if (k > 0 && fresh && norm > 0.5 * before) {
       const double size = scale(state, inertia);
-      if (norm <= 1e4 * m_options.tolerance * size) return k + 1;
+      if (norm <= 1e4 * m_tolerance * size) return k + 1;
       if (norm >= before) {
         throw SolveError(
             "residual", state.step, state.t, -1,
@@ -107,7 +119,7 @@ int Newton<dim>::solve(State& state, const std::vector<double>& given, const Ine
     }
   }
   const double left = norm / scale(state, inertia);
-  if (left <= m_options.tolerance) return m_options.max_iterations;
+  if (left <= m_tolerance) return m_options.max_iterations;
   throw SolveError("residual", state.step, state.t, -1,
                    fmt::format("{:.2e} of the element forces after {} iterations", left,
                                m_options.max_iterations));

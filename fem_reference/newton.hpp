@@ -3,6 +3,7 @@
 
 #include "fem_reference/boundary.hpp"
 #include "fem_reference/element_table.hpp"
+#include "fem_reference/linear_solver.hpp"
 #include "fem_reference/state.hpp"
 
 namespace concord::fem {
@@ -16,11 +17,14 @@ struct Inertia {
 
 /// Solves f_ext - f_int(u) - M a(u) = 0 at the free unknowns with the given ones prescribed.
 /// The first iteration carries the prescribed increments through the tangent (a predictor with
-/// lift); later ones backtrack until the residual falls (Armijo's constant 1e-4, halving).
+/// lift); later ones backtrack until the residual falls (Armijo's constant 1e-4, halving). With
+/// inertia the tangent of earlier steps serves as long as it cuts the residual by `chord_cut`
+/// an iteration.
 template <int dim> class Newton {
  public:
+  /// `direct`: which linear solver; `relative`: tolerance of the iterative one.
   Newton(const ElementTable<dim>& table, const Prescribed<dim>& prescribed,
-         const Options& options, bool direct);
+         const Options& options, double tolerance, bool direct, double relative);
 
   /// state.u in: last solution, out: new one; state.internal is renewed; state.external must be
   /// that of the new step. Returns the number of linear solves. Throws SolveError (step and
@@ -35,13 +39,16 @@ template <int dim> class Newton {
   double backtrack(State& state, const Vector& du, const Inertia* inertia, double norm,
                    Vector& r) const;
   void check(const State& state, long bad_element) const;
+  void renew_tangent(State& state, const Inertia* inertia);
 
   const ElementTable<dim>& m_table;
   const Prescribed<dim>& m_prescribed;
   const Options& m_options;
-  bool m_direct;
+  double m_tolerance;
   std::vector<char> m_given;
-  dealii::SparseMatrix<double> m_K;
+  LinearSolver m_linear;
+  bool m_has_tangent = false;
+  static constexpr double chord_cut = 0.2;
 };
 
 extern template class Newton<2>;

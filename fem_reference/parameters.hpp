@@ -8,7 +8,7 @@
 namespace concord::fem {
 
 enum class Solver { explicit_leapfrog, newmark, statics };
-enum class LinearSolver { automatic, direct, conjugate_gradients };
+enum class LinearChoice { automatic, direct, conjugate_gradients };
 
 /// The settings of one run, read and checked.
 struct Options {
@@ -16,13 +16,14 @@ struct Options {
   int degree = 2;
   std::string element = "Q2";
   Solver solver = Solver::explicit_leapfrog;
-  LinearSolver linear_solver = LinearSolver::automatic;
+  LinearChoice linear_solver = LinearChoice::automatic;
   bool split_law = false;  ///< the code gallery's neo-Hookean law instead of the scene's
   double dt = 0;           ///< given time step [s]; 0: chosen by the method
   double dt_factor = 0;    ///< fraction of the critical step (explicit)
   double courant = 0;      ///< dt c_p p / h (Newmark)
   double beta = 0.25, gamma = 0.5;
-  double tolerance = 0;  ///< of the residual, relative to the size of the element forces
+  double tolerance =
+      0;  ///< of the residual, relative to the size of the element forces; 0: default
   int max_iterations = 0;
   int max_halvings = 0;
 };

@@ -38,7 +38,7 @@ decltype(&concord_fem_run) load() {
       tried += "\n  " + path + ": not there";
       continue;
     }
-    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (library == nullptr) {
       tried += std::string("\n  ") + dlerror();
       continue;

@@ -10,13 +10,16 @@ namespace {
 
 using Vector = State::Vector;
 
-/// Above this many unknowns a factorisation in three dimensions costs more than conjugate
-/// gradients (measured: README, cost table).
+/// Above this many unknowns a factorisation in three dimensions is taken to cost more than
+/// conjugate gradients: a guess, not measured yet.
 constexpr unsigned direct_up_to_3d = 20000;
 
+/// Near round-off: a static solution costs one more iteration for it.
+constexpr double default_tolerance = 1e-12;
+
 template <int dim> bool use_direct(const Run<dim>& run) {
-  if (run.options.linear_solver != LinearSolver::automatic) {
-    return run.options.linear_solver == LinearSolver::direct;
+  if (run.options.linear_solver != LinearChoice::automatic) {
+    return run.options.linear_solver == LinearChoice::direct;
   }
   return dim == 2 || run.discretisation.dofs() <= direct_up_to_3d;
 }
@@ -90,7 +93,9 @@ template <int dim> void run_statics(Run<dim>& run) {
   State& state = run.state;
   const ElementTable<dim> table(run.discretisation, run.law, run.problem.thickness);
   run.observer.connect(table, MassProduct());
-  Newton<dim> newton(table, run.prescribed, run.options, use_direct(run));
+  const double tolerance =
+      run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
+  Newton<dim> newton(table, run.prescribed, run.options, tolerance, use_direct(run), 1e-10);
   if (const long bad = table.force(state.u, state.internal); bad >= 0) {
     throw SolveError("det F", 0, 0, bad, "in the initial state");
   }

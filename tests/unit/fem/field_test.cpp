@@ -72,7 +72,7 @@ TEST(Field, MatchesTheSamplesOnCurvedMeshes) {
     expect_field_matches_samples(result, false);
     double sum = 0;
     for (const double w : result.samples.weight) sum += w;
-    EXPECT_NEAR(sum, area, 2e-4 * area);  // straight sides: 5e-3
+    EXPECT_NEAR(sum, area, 2e-4 * area);
   }
 }
 
@@ -93,7 +93,7 @@ TEST(Field, TakesTheNearestCellJustOutsideAndIsQuick) {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   RecordProperty("seconds", std::to_string(seconds));
-  EXPECT_LE(seconds, 20);  // about 1 s alone on one core; other programs may share it
+  EXPECT_LE(seconds, 20);  // a few seconds asked for; other programs may share the core
   for (std::size_t k = 0; k < X.size(); ++k) {
     const Vec3 exact(0.1 * X[k][0] * X[k][1] + 0.05 * X[k][1] * X[k][1],
                      0.1 * X[k][0] * X[k][0] - 0.1 * X[k][1], 0);
