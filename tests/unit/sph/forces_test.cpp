@@ -141,6 +141,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{plane_strain, neo_hookean, wendland, PenaltyForm::none, 0},
                     Case{plane_strain, neo_hookean, cubic, PenaltyForm::ganzenmueller, 0.07},
                     Case{plane_stress, neo_hookean, cubic, PenaltyForm::potential, 0.3},
+                    Case{three_d, neo_hookean_isochoric, wendland, PenaltyForm::potential, 0.3},
+                    Case{plane_strain, neo_hookean_isochoric, cubic, PenaltyForm::ganzenmueller, 0.07},
+                    Case{plane_stress, neo_hookean_isochoric, cubic, PenaltyForm::potential, 0.3},
                     Case{plane_stress, st_venant_kirchhoff, cubic, PenaltyForm::ganzenmueller, 1}));
 
 }  // namespace

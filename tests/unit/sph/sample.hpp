@@ -4,6 +4,7 @@
 #include "scene/geometry.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace concord::sph {
