@@ -2,6 +2,7 @@
 
 #include "scene/errors.hpp"
 #include "scene/interrupt.hpp"
+#include "scene/suggest.hpp"
 #include "studies/driver/commands.hpp"
 
 #include <CLI/CLI.hpp>
@@ -84,6 +85,12 @@ void add_information(CLI::App& app, Commands& commands) {
       [&commands] { commands.job = [&commands] { return describe_command(commands.name); }; });
 }
 
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
 int run_job(int argc, char** argv) {
   CLI::App app("Verification and comparison of particle methods in solid mechanics", "concord");
   app.require_subcommand(1);
@@ -96,6 +103,9 @@ int run_job(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     const auto chosen = app.get_subcommands();
+    if (chosen.empty() && argc > 1)
+      throw InputError({"command line"}, "command", scene::in_quotes(argv[1]),
+                       scene::allowed_words(argv[1], command_names(app)));
     const std::string name = chosen.empty() ? "" : " " + chosen.front()->get_name();
     throw InputError({"command line"}, "concord" + name, error.what(),
                      "what `concord" + name + " --help` lists");
