@@ -21,6 +21,8 @@ struct Variant {
   std::map<std::string, std::string> settings;
 };
 
+inline void PrintTo(const Variant& variant, std::ostream* out) { *out << variant.name; }
+
 /// Every registered particle method with its defaults, and with the settings that take other
 /// paths through its kernels.
 inline std::vector<Variant> variants() {
@@ -104,6 +106,7 @@ inline double norm(const Column& c) {
   return std::sqrt(s);
 }
 
+/// Instantiated once, in forces_test.cpp, for the tests of all files.
 class EveryMethod : public testing::TestWithParam<Variant> {};
 
 inline std::string variant_name(const testing::TestParamInfo<Variant>& info) {

@@ -8,8 +8,6 @@
 namespace concord::particle::test {
 namespace {
 
-INSTANTIATE_TEST_SUITE_P(Registered, EveryMethod, testing::ValuesIn(variants()), variant_name);
-
 scene::Result run(const Variant& variant, const scene::Problem& problem, double dt) {
   scene::RunRequest request;
   request.h = problem.reference_length / 4;
