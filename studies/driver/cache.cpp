@@ -62,13 +62,17 @@ fs::path scene_library() {
   return fs::canonical(info.dli_fname);
 }
 
-std::string hash_binaries(const std::string& method) {
+/// Files that compute a method.
+std::vector<fs::path> binaries_of(const std::string& method) {
   const fs::path library = scene_library();
   const fs::path module = library.parent_path() / "libconcord_fem.so";
-  ContentHash hash;
-  hash.add_file(library);
   const bool own_module = method == "fem" && fs::exists(module);
-  hash.add_file(own_module ? module : fs::read_symlink("/proc/self/exe"));
+  return {library, own_module ? module : fs::path("/proc/self/exe")};
+}
+
+std::string hash_binaries(const std::string& method) {
+  ContentHash hash;
+  for (const fs::path& file : binaries_of(method)) hash.add_file(file);
   return hash.digits();
 }
 
@@ -79,6 +83,10 @@ std::string build_hash(const std::string& method) {
   auto& hash = known[method];
   if (hash.empty()) hash = hash_binaries(method);
   return hash;
+}
+
+bool build_unchanged(const std::string& method) {
+  return hash_binaries(method) == build_hash(method);
 }
 
 std::string cache_key(const scene::Problem& problem, const RunKey& run) {

@@ -39,6 +39,10 @@ struct RunKey {
 /// whose code lives in a module of its own, the module and the scene library.
 std::string build_hash(const std::string& method);
 
+/// False when the binaries have been replaced since build_hash was first asked: what runs now
+/// is not what the key says.
+bool build_unchanged(const std::string& method);
+
 /// Key of a run: canonical scene text, bytes of the geometry, the run, the binaries.
 std::string cache_key(const scene::Problem& problem, const RunKey& run);
 

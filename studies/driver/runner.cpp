@@ -187,7 +187,9 @@ class Crew {
     read_row(row, job.folder, how, message);
     m_done[job.row] = true;
     ++m_result.computed;
-    if (how.signal == 0 && (how.code == 0 || how.code == 3)) m_cache.store(job.key, job.folder);
+    const bool ended = how.signal == 0 && (how.code == 0 || how.code == 3);
+    if (ended && build_unchanged(m_study.cases[row.case_index].method))
+      m_cache.store(job.key, job.folder);
   }
 
   void stop() {

@@ -14,8 +14,10 @@ step(${CMAKE_COMMAND} -S ${CONSUMER} -B ${WORK}/build -G Ninja -D CMAKE_BUILD_TY
      -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_PREFIX_PATH=${prefix})
 step(${CMAKE_COMMAND} --build ${WORK}/build)
 step(${CMAKE_COMMAND} -E env CONCORD_HOME=${prefix}/${DATA} ${WORK}/build/consumer)
-if(NOT output MATCHES "delaunay tlsph")
-  message(FATAL_ERROR "the consumer does not see the methods: ${output}")
+set(methods "${output}")
+step(${CMAKE_COMMAND} -E env CONCORD_HOME=${prefix}/${DATA} ${WORK}/build/scene_only)
+if(NOT methods MATCHES "delaunay tlsph")
+  message(FATAL_ERROR "the consumer does not see the methods: ${methods}")
 endif()
 
 # The installed program finds its scenes without help from the environment of the sources.

@@ -1,4 +1,5 @@
-// Names the registered methods and computes one static patch test, as a user of the package would.
+// Names the registered methods and computes one static patch test, as a user of the package
+// would.
 
 #include "scene/method.hpp"
 #include "scene/reader.hpp"
