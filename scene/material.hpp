@@ -1,6 +1,6 @@
 #pragma once
-// Stress laws of the scenes: energy per reference volume, first Piola stress and tangent of the
-// compressible neo-Hookean and the St Venant-Kirchhoff solid. They take the displacement
+// Stress laws of the scenes: energy per reference volume, first Piola stress and tangent of two
+// compressible neo-Hookean solids and the St Venant-Kirchhoff solid. They take the displacement
 // gradient H = F - I, so that tiny strains keep their full relative accuracy. These are the
 // reference versions; the kernels of the methods are tested against them.
 
@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 namespace concord::scene {
@@ -25,6 +26,15 @@ template <class T> T log_one_plus(const T& x) {
     return std::log1p(x);
   else
     return log(T(1.0) + x);
+}
+
+/// e^x - 1; full relative accuracy near 0 for floating-point T.
+template <class T> T exp_minus_one(const T& x) {
+  using std::exp;
+  if constexpr (std::is_floating_point_v<T>)
+    return std::expm1(x);
+  else
+    return exp(x) - T(1.0);
 }
 
 /// x - ln(1 + x) without cancellation: sum_k (-x)^k/k from k = 2, where |x| < 0.1 (18 terms
@@ -113,14 +123,73 @@ struct NeoHookean {
     }
     return exp_minus_one(g);
   }
+};
 
- private:
-  template <class T> static T exp_minus_one(const T& x) {
+/// Neo-Hookean solid with isochoric and volumetric parts split, kappa = lambda + 2 mu/3:
+/// W = mu/2 (J^(-2/3) tr C - 3) + kappa/4 (J^2 - 1 - 2 ln J), C and J of three dimensions. The
+/// law of deal.II's code gallery, "Quasi-Static Finite-Strain Compressible Elasticity" (doi
+/// 10.5281/zenodo.1228964). Same moduli at small strain as NeoHookean. NaN where J <= 0.
+struct NeoHookeanIsochoric {
+  double lambda = 0, mu = 0;
+  double bulk_modulus() const { return lambda + 2 * mu / 3; }
+
+  /// W [J/m^3]. With C = c (I + K), c = tr C/3, tr K = 0: J^(-2/3) tr C = 3 (1 + d)^(-1/3) with
+  /// d = det(I + K) - 1 = det K - K:K/2, of second order in the strain; and the volumetric part
+  /// is kappa/4 (q - ln(1 + q)) with q = J^2 - 1.
+  template <class T> T energy(const Tensor3<T>& H) const {
+    if (!(volume_change(H) > -1.0)) return T(std::numeric_limits<double>::quiet_NaN());
+    const Tensor3<T> E = green_strain(H);
+    const T trace = E(0, 0) + E(1, 1) + E(2, 2);
+    const T q = T(2.0) * trace + T(4.0) * second_invariant(E) + T(8.0) * determinant(E);
+    Tensor3<T> K = E;
+    for (int i = 0; i < 3; ++i) K(i, i) -= trace / T(3.0);
+    K *= T(2.0) / (T(1.0) + trace * T(2.0) / T(3.0));
+    const T d = determinant(K) - T(0.5) * K.cwiseProduct(K).sum();
+    const T isochoric = exp_minus_one(T(log_one_plus(d) / T(-3.0)));
+    return T(1.5 * mu) * isochoric + T(0.25 * bulk_modulus()) * minus_log_one_plus(q);
+  }
+  /// P = [mu J^(-2/3) dev(H + H^T + H H^T) + kappa/2 j (2 + j) I] F^-T, j = J - 1 [Pa].
+  template <class T> Tensor3<T> stress(const Tensor3<T>& H) const {
     using std::exp;
-    if constexpr (std::is_floating_point_v<T>)
-      return std::expm1(x);
-    else
-      return exp(x) - T(1.0);
+    const T j = volume_change(H);
+    const T power = exp(T(log_one_plus(j) * T(-2.0) / T(3.0)));
+    Tensor3<T> tau = T(mu) * power * (H + H.transpose() + H * H.transpose());
+    const T mean = (tau(0, 0) + tau(1, 1) + tau(2, 2)) / T(3.0);
+    const T volumetric = T(0.5 * bulk_modulus()) * j * (T(2.0) + j);
+    for (int i = 0; i < 3; ++i) tau(i, i) += volumetric - mean;
+    const Tensor3<T> F = H + Tensor3<T>::Identity();
+    return tau * inverse_transpose(F);
+  }
+  /// With G = F^-T, c = mu J^(-2/3): c (d_ik d_jl - 2/3 (F_ij G_kl + G_ij F_kl))
+  /// + (2/9 c tr C + kappa J^2) G_ij G_kl + (c tr C/3 - kappa/2 (J^2 - 1)) G_il G_kj [Pa].
+  Tangent tangent(const Mat3& H) const;
+  /// F_33 - 1 with P_33 = 0, by Newton in s = ln F_33. P_33 = 0 says A(s) = B(s) with
+  /// A = 2/3 c e^(2s) + kappa/2 J^2, B = c (C_11 + C_22)/3 + kappa/2, J = J_2 e^s and c as
+  /// above. The slope of f = ln A - ln B lies between 4/3 and 8/3, so that every step reduces
+  /// the error, from everywhere; A - B is taken from the strains, without cancellation.
+  template <class T> T plane_stress_stretch(const Tensor3<T>& H) const {
+    using std::abs;
+    using std::exp;
+    const T j2 = H(0, 0) + H(1, 1) + H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0);
+    if (!(j2 > -1.0)) return T(std::numeric_limits<double>::quiet_NaN());
+    const T log_J2 = log_one_plus(j2);
+    const T strain = T(2.0) * (H(0, 0) + H(1, 1)) + H(0, 0) * H(0, 0) + H(1, 0) * H(1, 0) +
+                     H(0, 1) * H(0, 1) + H(1, 1) * H(1, 1);  // C_11 + C_22 - 2
+    const double half_kappa = 0.5 * bulk_modulus();
+    T s = T(-lambda / (lambda + 2 * mu)) * log_J2;  // the linearised solution
+    for (int i = 0; i < 60; ++i) {
+      const T c = T(mu / 3) * exp(T((log_J2 + s) * T(-2.0) / T(3.0)));
+      const T e = exp_minus_one(T(T(2.0) * s));
+      const T q = exp_minus_one(T(T(2.0) * (log_J2 + s)));  // J^2 - 1
+      const T difference = c * (T(2.0) * e - strain) + T(half_kappa) * q;
+      const T c_B = c * (strain + T(2.0)), B = c_B + T(half_kappa), A = B + difference;
+      const T slope_A = T(8.0 / 3) * c * (e + T(1.0)) + T(2 * half_kappa) * (q + T(1.0));
+      const T slope = slope_A / A + T(2.0 / 3) * c_B / B;
+      const T step = log_one_plus(T(difference / B)) / slope;
+      s -= step;
+      if (i > 3 && abs(step) <= 1e-17 + 1e-16 * abs(s)) break;
+    }
+    return exp_minus_one(s);
   }
 };
 
@@ -172,10 +241,20 @@ class ElasticLaw {
   Tangent tangent(const Mat3& H) const;
 
  private:
+  /// f(law) of the model at hand.
+  template <class F> auto with_model(const F& f) const {
+    switch (m_model) {
+      case MaterialModel::neo_hookean: return f(NeoHookean{m_lambda, m_mu});
+      case MaterialModel::neo_hookean_isochoric:
+        return f(NeoHookeanIsochoric{m_lambda, m_mu});
+      case MaterialModel::st_venant_kirchhoff: return f(StVenantKirchhoff{m_lambda, m_mu});
+    }
+    throw std::logic_error("material model without a law");
+  }
+
   MaterialModel m_model;
   Dimension m_dimension;
-  NeoHookean m_neo_hookean;
-  StVenantKirchhoff m_svk;
+  double m_lambda, m_mu;
 };
 
 /// Cauchy stress P F^T / J [Pa].

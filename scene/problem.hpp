@@ -14,7 +14,8 @@
 
 namespace concord::scene {
 
-enum class MaterialModel { neo_hookean, st_venant_kirchhoff };
+/// Stress laws; energies and sources in material.hpp.
+enum class MaterialModel { neo_hookean, neo_hookean_isochoric, st_venant_kirchhoff };
 
 /// Isotropic elastic constants and density of the homogeneous body.
 struct Material {

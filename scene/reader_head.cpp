@@ -145,8 +145,10 @@ void read_material(const Section& scene, Problem& problem) {
     throw InputError(scene.node().where, "material", "nothing",
                      "a table [material] with model, density and elastic constants");
   const Section section(*table);
-  problem.material.model = section.word("model") == "neo-hookean"
-                               ? MaterialModel::neo_hookean
+  const std::string model = section.word("model");
+  problem.material.model = model == "neo-hookean" ? MaterialModel::neo_hookean
+                           : model == "neo-hookean-isochoric"
+                               ? MaterialModel::neo_hookean_isochoric
                                : MaterialModel::st_venant_kirchhoff;
   problem.material.rho0 = section.positive("density", unit::density);
   read_constants(section, problem.material);

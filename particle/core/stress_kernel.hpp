@@ -149,13 +149,12 @@ CONCORD_INLINE void logarithms(const LameConstants& c, const double (&j)[stress_
 /// J^(-2/3) of W lanes from ln J.
 CONCORD_INLINE void isochoric_powers(const double (&log_j)[stress_width],
                                      double (&power)[stress_width]) {
-  double largest = 0;
-#pragma omp simd reduction(max : largest)
+  int far = 0;
   for (int l = 0; l < stress_width; ++l) {
     power[l] = exp_near_zero(-2.0 / 3 * log_j[l]);
-    largest = std::max(largest, std::abs(log_j[l]));
+    far |= std::abs(log_j[l]) > 0.3;
   }
-  if (largest > 0.3) {
+  if (far != 0) {
     for (int l = 0; l < stress_width; ++l) power[l] = std::exp(-2.0 / 3 * log_j[l]);
   }
 }
@@ -190,20 +189,20 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
     plane_stress_states(c, h, log_j, power, strain_33);
   else if constexpr (is_isochoric<Law>)
     isochoric_powers(log_j, power);
-  const double half_kappa = 0.5 * c.lambda + c.mu / 3;
 #pragma omp simd
   for (int l = 0; l < stress_width; ++l) {
     if constexpr (Dim == 3) {
       const double h00 = h[0][l], h10 = h[1][l], h20 = h[2][l], h01 = h[3][l], h11 = h[4][l],
                    h21 = h[5][l], h02 = h[6][l], h12 = h[7][l], h22 = h[8][l];
-      double shear = c.mu;
-      if constexpr (is_isochoric<Law>) shear *= power[l];
-      double m00 = shear * (2 * h00 + h00 * h00 + h10 * h10 + h20 * h20);
-      double m11 = shear * (2 * h11 + h01 * h01 + h11 * h11 + h21 * h21);
-      double m22 = shear * (2 * h22 + h02 * h02 + h12 * h12 + h22 * h22);
-      const double m01 = shear * (h01 + h10 + h00 * h01 + h10 * h11 + h20 * h21);
-      const double m02 = shear * (h02 + h20 + h00 * h02 + h10 * h12 + h20 * h22);
-      const double m12 = shear * (h12 + h21 + h01 * h02 + h11 * h12 + h21 * h22);
+      double m00 = c.mu * (2 * h00 + h00 * h00 + h10 * h10 + h20 * h20);
+      double m11 = c.mu * (2 * h11 + h01 * h01 + h11 * h11 + h21 * h21);
+      double m22 = c.mu * (2 * h22 + h02 * h02 + h12 * h12 + h22 * h22);
+      double m01 = c.mu * (h01 + h10 + h00 * h01 + h10 * h11 + h20 * h21);
+      double m02 = c.mu * (h02 + h20 + h00 * h02 + h10 * h12 + h20 * h22);
+      double m12 = c.mu * (h12 + h21 + h01 * h02 + h11 * h12 + h21 * h22);
+      if constexpr (is_isochoric<Law>) {
+        m00 *= power[l], m11 *= power[l], m22 *= power[l], m01 *= power[l], m02 *= power[l], m12 *= power[l];
+      }
       const double f00 = 1 + h00, f11 = 1 + h11, f22 = 1 + h22;
       double a00, a10, a20, a01, a11, a21, a02, a12, a22, scale;
       if constexpr (Law == StressLaw::st_venant_kirchhoff) {
@@ -215,7 +214,7 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
       } else {
         double volumetric;
         if constexpr (is_isochoric<Law>)
-          volumetric = half_kappa * (j[l] * (2 + j[l])) - (m00 + m11 + m22) / 3;
+          volumetric = (0.5 * c.lambda + c.mu / 3) * (j[l] * (2 + j[l])) - (m00 + m11 + m22) / 3;
         else
           volumetric = c.lambda * log_j[l];
         m00 += volumetric, m11 += volumetric, m22 += volumetric;
@@ -238,11 +237,10 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
       p[8][l] = scale * (a20 * m02 + a21 * m12 + a22 * m22);
     } else {
       const double h00 = h[0][l], h10 = h[1][l], h01 = h[2][l], h11 = h[3][l];
-      double shear = c.mu;
-      if constexpr (is_isochoric<Law>) shear *= power[l];
-      double m00 = shear * (2 * h00 + h00 * h00 + h10 * h10);
-      double m11 = shear * (2 * h11 + h01 * h01 + h11 * h11);
-      const double m01 = shear * (h01 + h10 + h00 * h01 + h10 * h11);
+      double m00 = c.mu * (2 * h00 + h00 * h00 + h10 * h10);
+      double m11 = c.mu * (2 * h11 + h01 * h01 + h11 * h11);
+      double m01 = c.mu * (h01 + h10 + h00 * h01 + h10 * h11);
+      if constexpr (is_isochoric<Law>) m00 *= power[l], m11 *= power[l], m01 *= power[l];
       const double f00 = 1 + h00, f11 = 1 + h11;
       double a00, a10, a01, a11, scale;
       if constexpr (Law == StressLaw::st_venant_kirchhoff) {
@@ -252,9 +250,9 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
       } else {
         double volumetric;
         if constexpr (condenses_isochoric<Dim, Law>)
-          volumetric = -shear * strain_33[l];
+          volumetric = -c.mu * power[l] * strain_33[l];
         else if constexpr (is_isochoric<Law>)
-          volumetric = half_kappa * (j[l] * (2 + j[l])) - (m00 + m11) / 3;
+          volumetric = (0.5 * c.lambda + c.mu / 3) * (j[l] * (2 + j[l])) - (m00 + m11) / 3;
         else
           volumetric = c.lambda * log_j[l];
         m00 += volumetric, m11 += volumetric;

@@ -44,8 +44,8 @@ void compare(const scene::Problem& problem, double magnitude) {
       const Mat3 difference = tensor_at(P, Dim, a) - expected;
       // Relative to the stress itself: the laws keep their accuracy down to the smallest
       // strains.
-      EXPECT_LT(difference.topLeftCorner<Dim, Dim>().norm(), 4e-15 * expected.norm())
-          << "strain " << magnitude;
+      const double error = difference.topLeftCorner(Dim, Dim).norm();
+      EXPECT_LT(error, 4e-15 * expected.norm()) << "strain " << magnitude;
       EXPECT_EQ(tensor_at(H, Dim, a), reference[a]);
     }
   }

@@ -29,11 +29,14 @@ Tensor3<Inner> active(const Mat3& H) {
 }
 
 template <class Law> class Laws : public testing::Test {};
-using Types = testing::Types<NeoHookean, StVenantKirchhoff>;
+using Types = testing::Types<NeoHookean, NeoHookeanIsochoric, StVenantKirchhoff>;
 TYPED_TEST_SUITE(Laws, Types);
 
 Material material_of(const NeoHookean&) {
   return {MaterialModel::neo_hookean, 1, 0, 0, lambda, mu};
+}
+Material material_of(const NeoHookeanIsochoric&) {
+  return {MaterialModel::neo_hookean_isochoric, 1, 0, 0, lambda, mu};
 }
 Material material_of(const StVenantKirchhoff&) {
   return {MaterialModel::st_venant_kirchhoff, 1, 0, 0, lambda, mu};
@@ -122,9 +125,18 @@ TYPED_TEST(Laws, PlaneStressTangentFollowsTheConstraint) {
   }
 }
 
-TEST(ElasticLaw, PlaneStrainIgnoresTheThirdDirection) {
-  const ElasticLaw law({MaterialModel::neo_hookean, 1, 0, 0, lambda, mu},
-                       Dimension::plane_strain);
+TYPED_TEST(Laws, EachModelTakesItsOwnLaw) {
+  const TypeParam policy{lambda, mu};
+  const ElasticLaw law(material_of(policy), Dimension::three_d);
+  const Mat3 H = random_gradient(5, 0.3);
+  EXPECT_EQ(law.energy(H), policy.energy(H));
+  EXPECT_EQ(law.stress(H), policy.stress(H));
+  EXPECT_EQ(law.tangent(H), policy.tangent(H));
+}
+
+TYPED_TEST(Laws, PlaneStrainIgnoresTheThirdDirection) {
+  const TypeParam policy{lambda, mu};
+  const ElasticLaw law(material_of(policy), Dimension::plane_strain);
   Mat3 H = random_gradient(3, 0.2);
   const Mat3 P = law.stress(H);
   H(2, 2) = 5;
@@ -148,8 +160,47 @@ TEST(ElasticLaw, UniaxialAndShearByHand) {
   EXPECT_NEAR(pressure(Vec3(3, 3, 3).asDiagonal().toDenseMatrix()), -3, 1e-15);
 }
 
-TEST(NeoHookean, NotANumberWhereTheVolumeVanishes) {
-  const NeoHookean law{lambda, mu};
+TEST(NeoHookeanIsochoric, ByHand) {
+  // W and P as they are written, at a strain where nothing cancels.
+  const NeoHookeanIsochoric law{lambda, mu};
+  const double kappa = lambda + 2 * mu / 3;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const Mat3 H = random_gradient(seed, 0.4), F = H + Mat3::Identity();
+    const double J = F.determinant(), c = std::pow(J, -2.0 / 3), tr_C = F.squaredNorm();
+    EXPECT_NEAR(law.energy(H),
+                mu / 2 * (c * tr_C - 3) + kappa / 4 * (J * J - 1 - 2 * std::log(J)), 1e-14);
+    const Mat3 G = F.inverse().transpose();
+    const Mat3 P = mu * c * (F - tr_C / 3 * G) + kappa / 2 * (J * J - 1) * G;
+    EXPECT_LT((law.stress(H) - P).norm(), 1e-14 * (1 + P.norm()));
+  }
+  // Pure dilation F = s I is volumetric alone: P = kappa/2 (s^6 - 1)/s.
+  const double s = 1.3;
+  const Mat3 dilated = law.stress(Mat3((s - 1) * Mat3::Identity()));
+  EXPECT_NEAR(dilated(0, 0), kappa / 2 * (std::pow(s, 6) - 1) / s, 1e-14);
+  EXPECT_NEAR(dilated(0, 1), 0, 1e-16);
+}
+
+TEST(NeoHookeanIsochoric, PlaneStressStretchFromFarAway) {
+  for (const double nu : {-0.9, 0.0, 0.3, 0.49999})
+    for (const double a : {0.05, 0.4, 1.0, 3.0, 20.0})
+      for (const double b : {0.05, 0.9, 20.0}) {
+        const double stiff = 2 * mu * nu / (1 - 2 * nu);
+        const NeoHookeanIsochoric law{stiff, mu};
+        Mat3 H = Mat3::Zero();
+        H(0, 0) = a - 1;
+        H(1, 1) = b - 1;
+        H(2, 2) = law.plane_stress_stretch(H);
+        ASSERT_GT(H(2, 2), -1) << nu << " " << a << " " << b;
+        // P_33 is as far from zero as rounding makes it: that of 1 + H_33 and of 1 + (J - 1).
+        const double F33 = 1 + H(2, 2), rounding = 1 + 1 / F33 + 1 / (a * b * F33);
+        EXPECT_LT(std::abs(law.stress(H)(2, 2)), 5e-15 * rounding * law.tangent(H)(8, 8) * F33)
+            << nu << " " << a << " " << b;
+      }
+}
+
+TYPED_TEST(Laws, NotANumberWhereTheVolumeVanishes) {
+  if (std::is_same_v<TypeParam, StVenantKirchhoff>) return;  // a polynomial in F
+  const TypeParam law{lambda, mu};
   Mat3 H = Mat3::Zero();
   H(0, 0) = -1.5;
   EXPECT_TRUE(std::isnan(law.energy(H)));

@@ -67,18 +67,18 @@ TEST_P(Forces, GradientsOfAffineFieldsAreExact) {
 TEST_P(Forces, AreDerivativesOfThePotential) {
   if (!model.has_potential()) return;
   const Column f = forces(u);
-  const double d = 2e-5 * body.h, scale = largest(f);
+  const double d = 6e-4 * body.h, scale = largest(f);
   Column moved = u;
   for (Index a = 0; a < body.n; a += 7) {
     for (int i = 0; i < body.dim; ++i) {
       const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
       double difference = 0;  // fourth order: (-W(2d) + 8 W(d) - 8 W(-d) + W(-2d)) / (12 d)
       for (const auto& [step, weight] : {std::pair{2.0, -1.0}, {1.0, 8.0}, {-1.0, -8.0}, {-2.0, 1.0}}) {
-        moved[k] = u[k] + step * 30 * d;
+        moved[k] = u[k] + step * d;
         difference += weight * energy(moved);
       }
       moved[k] = u[k];
-      EXPECT_NEAR(f[k], -difference / (12 * 30 * d), 1e-9 * scale);
+      EXPECT_NEAR(f[k], -difference / (12 * d), 1e-9 * scale);
     }
   }
 }
