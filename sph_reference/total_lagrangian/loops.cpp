@@ -10,16 +10,11 @@
 
 namespace concord::sph {
 
-typedef double v8d __attribute__((vector_size(64)));
 using particle::Lanes;
 using particle::stress_width;
 using particle::v2d;
 using particle::v4d;
 using particle::Vec;
-
-/// Two spatial vectors in one register: T in the low half, H in the high half.
-template <int Dim>
-using Twin = std::conditional_t<Dim == 3, v8d, v4d>;
 
 #define SPH_TARGET
 namespace baseline {
@@ -34,16 +29,10 @@ namespace avx2 {
 #include "sph_reference/total_lagrangian/rows.inc"
 }
 #undef SPH_TARGET
-#define SPH_TARGET __attribute__((target("arch=x86-64-v4")))
-namespace avx512 {
-#include "sph_reference/total_lagrangian/rows.inc"
-}
-#undef SPH_TARGET
 #endif
 
 Isa best_isa() {
 #ifdef SPH_WIDE
-  if (__builtin_cpu_supports("x86-64-v4")) return Isa::avx512;
   if (__builtin_cpu_supports("x86-64-v3")) return Isa::avx2;
 #endif
   return Isa::baseline;
@@ -51,7 +40,6 @@ Isa best_isa() {
 
 Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous, Isa isa) {
 #ifdef SPH_WIDE
-  if (isa == Isa::avx512) return avx512::choose(dim, law, penalty, viscous);
   if (isa == Isa::avx2) return avx2::choose(dim, law, penalty, viscous);
 #endif
   static_cast<void>(isa);

@@ -10,7 +10,7 @@ using particle::LameConstants;
 using particle::StressLaw;
 
 /// What the loops read and write. Vectors are columns of `stride` doubles a particle. A record holds, for each column k of its
-/// particle's tensors, [T_k | H_k]: a cache line in 3D, so that one product with X_ab gives T X_ab and H X_ab together.
+/// particle's tensors, [T_k | H_k], a cache line in 3D.
 struct State {
   const double *X, *u, *v;  ///< v: read with viscosity only
   const double* V;          ///< volumes, with thickness [m^3]
@@ -31,8 +31,8 @@ enum class PenaltyForm {
   potential       ///< 1/2 k_ab |l_ab|^2 a pair, with all its derivatives (TLS.11)
 };
 
-/// Instruction sets that the loops are compiled for.
-enum class Isa { baseline, avx2, avx512 };
+/// Instruction sets that the loops are compiled for. One neighbour's vectors fill AVX2's registers; AVX-512 was not faster.
+enum class Isa { baseline, avx2 };
 /// The widest one that this machine runs.
 Isa best_isa();
 

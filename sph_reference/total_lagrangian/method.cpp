@@ -35,7 +35,11 @@ scene::MethodInfo tlsph_info() {
                   "form of the penalty: along the current bond and without potential (TLS.10), or from the energy "
                   "1/2 k |u_loc|^2 a pair (TLS.11)"),
            number("alpha", "0", 0, 1e6, ">= 0", "linear coefficient of Monaghan's artificial viscosity (TLS.12)"),
-           number("beta", "0", 0, 1e6, ">= 0", "quadratic coefficient of Monaghan's artificial viscosity (TLS.12)")}};
+           number("beta", "0", 0, 1e6, ">= 0", "quadratic coefficient of Monaghan's artificial viscosity (TLS.12)")},
+          {{"equilibrium patch test",
+            "gradients of affine fields are exact, but the gradient vectors (TLS.5) do not meet the integration "
+            "constraint sum_a V_a g_ab = 0 off a lattice, so that constant stress leaves forces"},
+           {"potential", "with psi > 0 and penalty = ganzenmuller the penalty force (TLS.10) has no potential"}}};
 }
 
 class TlsphMethod final : public particle::ParticleMethod {

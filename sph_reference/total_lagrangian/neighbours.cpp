@@ -28,15 +28,15 @@ class Grid {
     fill();
   }
 
-  /// visit(b) for every particle in the cells around a, itself included.
+  /// visit(b, X_b) for every particle in the cells around X.
   template <class Visit>
-  void around(Index a, const Visit& visit) const {
-    const std::array<Index, 3> c = cell_of(m_body.position(a));
+  void around(const Vec3& X, const Visit& visit) const {
+    const std::array<Index, 3> c = cell_of(X);
     for (Index k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, m_cells[2] - 1); ++k) {
       for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
         const Index first = number({std::max(c[0] - 1, 0), j, k});
         const Index last = number({std::min(c[0] + 1, m_cells[0] - 1), j, k});
-        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s) visit(m_particles[s]);
+        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s) visit(m_particles[s], m_positions[s]);
       }
     }
   }
@@ -70,47 +70,50 @@ class Grid {
     for (std::size_t c = 1; c < m_begin.size(); ++c) m_begin[c] += m_begin[c - 1];
     m_particles.resize(m_body.n);
     std::vector<Index> next(m_begin.begin(), m_begin.end() - 1);
-    for (Index a = 0; a < m_body.n; ++a) m_particles[next[cell[a]]++] = a;
+    m_positions.resize(m_body.n);
+    for (Index a = 0; a < m_body.n; ++a) {
+      m_positions[next[cell[a]]] = m_body.position(a);
+      m_particles[next[cell[a]]++] = a;
+    }
   }
 
   const Body& m_body;
   Vec3 m_low;
   double m_edge = 0;
   std::array<Index, 3> m_cells{};
-  std::vector<Index> m_begin, m_particles;
+  std::vector<Index> m_begin, m_particles;  ///< particles of cell c: m_particles[m_begin[c]] ...
+  std::vector<Vec3> m_positions;            ///< beside m_particles
 };
 
-/// visit(b, R_ab) for all b != a closer than R. A lattice has pairs at R itself, where W and W' vanish: round-off shall not
-/// decide whether they count.
-template <class Visit>
-void for_neighbours(const Body& body, const Grid& grid, double R, Index a, const Visit& visit) {
-  const Vec3 X_a = body.position(a);
+/// Appends the neighbours of particles [first, last) to `found`, sorted by number, and counts them in begin[a + 1]. A lattice has pairs
+/// at R itself, where W and W' vanish: round-off shall not decide whether they count.
+void append_rows(const Body& body, const Grid& grid, double R, std::size_t first, std::size_t last,
+                 std::vector<std::size_t>& begin, std::vector<Index>& found) {
   const double limit = R * R * (1 - 1e-10);
-  grid.around(a, [&](Index b) {
-    const double r2 = (body.position(b) - X_a).squaredNorm();
-    if (b != a && r2 < limit) visit(b, std::sqrt(r2));
-  });
+  for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
+    const Vec3 X_a = body.position(a);
+    const std::size_t start = found.size();
+    grid.around(X_a, [&](Index b, const Vec3& X_b) {
+      if ((X_b - X_a).squaredNorm() < limit && b != a) found.push_back(b);
+    });
+    std::sort(found.begin() + static_cast<std::ptrdiff_t>(start), found.end());
+    begin[a + 1] = found.size() - start;
+  }
 }
 
 void find_rows(const Body& body, const Kernel& kernel, const Executor& executor, Neighbours& rows) {
   const Grid grid(body, kernel.radius());
   rows.begin.assign(body.n + 1, 0);
+  std::vector<std::vector<Index>> found(Executor::pieces(body.n));
   executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    for (std::size_t a = first; a < last; ++a) {
-      for_neighbours(body, grid, kernel.radius(), static_cast<Index>(a),
-                     [&](Index, double) { ++rows.begin[a + 1]; });
-    }
+    append_rows(body, grid, kernel.radius(), first, last, rows.begin, found[first / Executor::piece]);
   });
   for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
-  rows.other.assign(rows.count() + Neighbours::lookahead, 0);
-  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    for (std::size_t a = first; a < last; ++a) {
-      std::size_t k = rows.begin[a];
-      for_neighbours(body, grid, kernel.radius(), static_cast<Index>(a),
-                     [&](Index b, double) { rows.other[k++] = b; });
-      std::sort(rows.other.begin() + rows.begin[a], rows.other.begin() + k);
-    }
-  });
+  rows.other.reserve(rows.count());
+  for (std::vector<Index>& part : found) {
+    rows.other.insert(rows.other.end(), part.begin(), part.end());
+    std::vector<Index>().swap(part);
+  }
 }
 
 /// K_a (TLS.4) of a row whose weights are there.
@@ -153,8 +156,8 @@ bool invert_moment(const Body& body, Neighbours& rows, Index a) {
 Neighbours find_neighbours(const Body& body, const Kernel& kernel, double penalty, const Executor& executor) {
   Neighbours rows;
   find_rows(body, kernel, executor, rows);
-  rows.weight.assign(rows.count(), 0.0);
-  rows.stiffness.assign(penalty > 0 ? rows.count() : 0, 0.0);
+  rows.weight.assign(rows.count() + Neighbours::padding, 0.0);
+  rows.stiffness.assign(penalty > 0 ? rows.count() + Neighbours::padding : 0, 0.0);
   rows.inverse_moment.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
   std::vector<Index> singular(Executor::pieces(body.n), -1);
   executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {

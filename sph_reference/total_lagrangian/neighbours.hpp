@@ -18,12 +18,13 @@ using particle::Executor;
 /// that every particle sums its own forces and threads never write to the same place.
 struct Neighbours {
   std::vector<std::size_t> begin;  ///< row of a: [begin[a], begin[a+1])
-  std::vector<Index> other;        ///< b; followed by `lookahead` zeros, so that prefetching may read past the end
+  std::vector<Index> other;        ///< b
   Column weight;                   ///< w_ab = A_b (-W'(R_ab)/R_ab) [1/m^2], A_b = V_b / thickness (TLS.3)
   Column stiffness;                ///< kappa_ab = psi E A_b W(R_ab) / R_ab^2 [N/m^4] (TLS.9); empty without penalty
   Column inverse_moment;           ///< K_a^-1 [m^2]: K_a = sum_b w_ab X_ab (x) X_ab (TLS.4), dim padded columns
 
-  static constexpr std::size_t lookahead = 32;
+  /// Zeros behind `weight` and `stiffness`, so that a vector may be loaded from the last row's end.
+  static constexpr std::size_t padding = 3;
   std::size_t count() const { return begin.back(); }
 };
 

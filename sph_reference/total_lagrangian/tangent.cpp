@@ -10,7 +10,7 @@ namespace {
 particle::GradientRows gradient_rows(const Body& body, const Neighbours& rows) {
   particle::GradientRows g;
   g.begin = rows.begin;
-  g.neighbour.assign(rows.other.begin(), rows.other.begin() + static_cast<std::ptrdiff_t>(rows.count()));
+  g.neighbour = rows.other;
   g.g.resize(rows.count());
   for (Index a = 0; a < body.n; ++a) {
     const double* K = &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
