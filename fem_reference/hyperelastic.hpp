@@ -8,6 +8,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <cmath>
+#include <stdexcept>
 
 namespace concord::fem {
 
@@ -18,16 +19,16 @@ namespace concord::fem {
 ///   split neo-Hookean          W = mu/2 (J^-2/3 tr C - 3) + kappa/4 (J^2 - 1 - 2 ln J),
 ///                              P = mu J^-2/3 (F - tr C/3 F^-T) + kappa/2 (J^2 - 1) F^-T
 /// (numbers: Delaunay paper; the split law, kappa = lambda + 2/3 mu, is that of deal.II's code
-/// gallery, "Quasi-static finite-strain compressible elasticity", and not a scene's: it serves
-/// the comparison with published figures). Tensors have the space dimension `dim`; in plane
-/// strain F_33 = 1, in plane stress F_33 follows from P_33 = 0. Functions that return bool
-/// return false, and leave their outputs alone, when det F <= 0, NaN, or no F_33 exists.
+/// gallery, "Quasi-static finite-strain compressible elasticity": the model
+/// neo-hookean-isochoric of the scenes, or `split` in place of the scene's). Tensors have the
+/// space dimension `dim`; in plane strain F_33 = 1, in plane stress F_33 follows from P_33 = 0.
+/// Functions that return bool return false, and leave their outputs alone, when det F <= 0,
+/// NaN, or no F_33 exists.
 template <int dim> class Hyperelastic {
  public:
   using Tensor2 = dealii::Tensor<2, dim>;
   using Tensor4 = dealii::Tensor<4, dim>;
 
-  /// Throws InputError for the split law in plane stress, which is not provided.
   explicit Hyperelastic(const scene::Problem& problem, bool split = false);
 
   /// First Piola-Kirchhoff stress P_iJ [Pa].
@@ -48,25 +49,65 @@ template <int dim> class Hyperelastic {
   void tangent_3(const dealii::Tensor<2, 3>& F, double J, dealii::Tensor<4, 3>& A) const;
 
   enum class Law { neo_hookean, st_venant_kirchhoff, split };
+  static Law law_of(scene::MaterialModel model);
+  bool split_stretch_33(const dealii::Tensor<2, 3>& F, double J2, double& F33) const;
   Law m_law;
   bool m_plane_stress;
   double m_lambda, m_mu;
 };
 
 template <int dim>
-Hyperelastic<dim>::Hyperelastic(const scene::Problem& problem, bool split)
-    : m_law(split ? Law::split
-            : problem.material.model == scene::MaterialModel::neo_hookean
-                ? Law::neo_hookean
-                : Law::st_venant_kirchhoff),
-      m_plane_stress(problem.dimension == Dimension::plane_stress) {
-  if (split && m_plane_stress) {
-    throw InputError({problem.file.string()}, "fem.law", "split-neo-hookean in plane stress",
-                     "law = scene, or 3D or plane strain");
+typename Hyperelastic<dim>::Law Hyperelastic<dim>::law_of(scene::MaterialModel model) {
+  switch (model) {
+    case scene::MaterialModel::neo_hookean:
+      return Law::neo_hookean;
+    case scene::MaterialModel::neo_hookean_isochoric:
+      return Law::split;
+    case scene::MaterialModel::st_venant_kirchhoff:
+      return Law::st_venant_kirchhoff;
   }
+  throw std::logic_error("material model without a law");
+}
+
+template <int dim>
+Hyperelastic<dim>::Hyperelastic(const scene::Problem& problem, bool split)
+    : m_law(split ? Law::split : law_of(problem.material.model)),
+      m_plane_stress(problem.dimension == Dimension::plane_stress) {
   const double E = problem.material.E, nu = problem.material.nu;
   m_lambda = nu * E / ((1 + nu) * (1 - 2 * nu));  // (54)
   m_mu = E / (2 * (1 + nu));
+}
+
+/// Split law: W as a function of s = ln F_33 at fixed C_11 + C_22 = c,
+///   W(s) = mu/2 J_2^(-2/3) (c e^(-2s/3) + e^(4s/3)) + kappa/4 (J_2^2 e^(2s) - 2 s) + const,
+/// is convex, a sum of exponentials; P_33 F_33 = W'(s) = 0 by Newton, with steps halved while
+/// they do not bring W' closer to zero.
+template <int dim>
+bool Hyperelastic<dim>::split_stretch_33(const dealii::Tensor<2, 3>& F, double J2,
+                                         double& F33) const {
+  const double c =
+      F[0][0] * F[0][0] + F[1][0] * F[1][0] + F[0][1] * F[0][1] + F[1][1] * F[1][1];
+  const double kappa = m_lambda + 2 * m_mu / 3, shear = m_mu / std::cbrt(J2 * J2);
+  const auto slope = [&](double s) {
+    return shear / 3 * (2 * std::exp(4 * s / 3) - c * std::exp(-2 * s / 3)) +
+           kappa / 2 * (J2 * J2 * std::exp(2 * s) - 1);
+  };
+  double s = -m_lambda * std::log(J2) / (m_lambda + 2 * m_mu), W1 = slope(s);
+  for (int k = 0; k < 100; ++k) {
+    const double W2 = shear / 9 * (8 * std::exp(4 * s / 3) + 2 * c * std::exp(-2 * s / 3)) +
+                      kappa * J2 * J2 * std::exp(2 * s);
+    double step = -W1 / W2;
+    while (std::abs(step) > 4e-16 * (1 + std::abs(s)) &&
+           !(std::abs(slope(s + step)) < std::abs(W1))) {
+      step /= 2;
+    }
+    s += step;
+    W1 = slope(s);
+    if (!std::isfinite(s)) return false;
+    if (std::abs(step) <= 4e-16 * (1 + std::abs(s))) break;
+  }
+  F33 = std::exp(s);
+  return true;
 }
 
 /// Neo-Hookean: lambda (ln J_2 + s) - mu + mu e^(2s) = 0 for s = ln F_33, by Newton (increasing
@@ -84,6 +125,7 @@ bool Hyperelastic<dim>::stretch_33(const dealii::Tensor<2, 3>& F, double& F33) c
     F33 = std::sqrt(square);
     return true;
   }
+  if (m_law == Law::split) return split_stretch_33(F, J2, F33);
   const double log_J2 = std::log(J2);
   double s = -m_lambda * log_J2 / (m_lambda + 2 * m_mu);  // the linearised solution
   for (int k = 0; k < 60; ++k) {

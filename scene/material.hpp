@@ -244,10 +244,12 @@ class ElasticLaw {
   /// f(law) of the model at hand.
   template <class F> auto with_model(const F& f) const {
     switch (m_model) {
-      case MaterialModel::neo_hookean: return f(NeoHookean{m_lambda, m_mu});
+      case MaterialModel::neo_hookean:
+        return f(NeoHookean{m_lambda, m_mu});
       case MaterialModel::neo_hookean_isochoric:
         return f(NeoHookeanIsochoric{m_lambda, m_mu});
-      case MaterialModel::st_venant_kirchhoff: return f(StVenantKirchhoff{m_lambda, m_mu});
+      case MaterialModel::st_venant_kirchhoff:
+        return f(StVenantKirchhoff{m_lambda, m_mu});
     }
     throw std::logic_error("material model without a law");
   }

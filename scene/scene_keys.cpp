@@ -24,7 +24,8 @@ const std::vector<KeyInfo>& scene_keys() {
       {"parameters.*", "any", "", "a number, a text with a unit, or {expr = \"...\"}",
        "Parameter of the .geo and of expressions, by its own name, in SI units"},
 
-      {"material.model", "text", "", "neo-hookean | neo-hookean-isochoric | st-venant-kirchhoff",
+      {"material.model", "text", "",
+       "neo-hookean | neo-hookean-isochoric | st-venant-kirchhoff",
        "Stress law: W = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)^2; W = mu/2 (J^(-2/3) tr C "
        "- 3) + kappa/4 (J^2 - 1 - 2 ln J), kappa = lambda + 2 mu/3; or W = lambda/2 (tr E)^2 + "
        "mu E:E"},

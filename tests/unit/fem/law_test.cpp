@@ -96,6 +96,7 @@ TEST_P(LawDerivatives, StressOfEnergyAndTangentOfStress) {
 
 constexpr auto neo = MaterialModel::neo_hookean;
 constexpr auto svk = MaterialModel::st_venant_kirchhoff;
+constexpr auto iso = MaterialModel::neo_hookean_isochoric;
 INSTANTIATE_TEST_SUITE_P(All, LawDerivatives,
                          testing::Values(Case{Dimension::three_d, neo, Split::no},
                                          Case{Dimension::three_d, svk, Split::no},
@@ -104,10 +105,13 @@ INSTANTIATE_TEST_SUITE_P(All, LawDerivatives,
                                          Case{Dimension::plane_strain, svk, Split::no},
                                          Case{Dimension::plane_strain, neo, Split::yes},
                                          Case{Dimension::plane_stress, neo, Split::no},
-                                         Case{Dimension::plane_stress, svk, Split::no}));
+                                         Case{Dimension::plane_stress, svk, Split::no},
+                                         Case{Dimension::three_d, iso, Split::no},
+                                         Case{Dimension::plane_strain, iso, Split::no},
+                                         Case{Dimension::plane_stress, iso, Split::no}));
 
 TEST(Law, PlaneStressLeavesNoStressAcross) {
-  for (const MaterialModel model : {neo, svk}) {
+  for (const MaterialModel model : {neo, iso, svk}) {
     const Hyperelastic<2> plane(problem_of(Dimension::plane_stress, model));
     const Hyperelastic<3> solid(problem_of(Dimension::three_d, model));
     int tried = 0;
@@ -130,7 +134,7 @@ TEST(Law, PlaneStressLeavesNoStressAcross) {
 }
 
 TEST(Law, AgreesWithTheScenesLaws) {
-  for (const MaterialModel model : {neo, svk}) {
+  for (const MaterialModel model : {neo, iso, svk}) {
     const scene::Problem problem = problem_of(Dimension::three_d, model);
     const Hyperelastic<3> law(problem);
     const scene::ElasticLaw scenes(problem.material, problem.dimension);
@@ -161,7 +165,31 @@ TEST(Law, RejectsInvertedAndUndefinedStates) {
   F[0][0] = std::nan("");
   EXPECT_FALSE(law.stress(F, P));
   EXPECT_TRUE(std::isnan(law.energy(F)));
-  EXPECT_THROW(Hyperelastic<2>(problem_of(Dimension::plane_stress, neo), true), InputError);
+}
+
+TEST(Law, SplitSettingAndIsochoricModelAreOneLaw) {
+  for (const Dimension dimension : {Dimension::plane_strain, Dimension::plane_stress}) {
+    const Hyperelastic<2> setting(problem_of(dimension, neo), true);
+    const Hyperelastic<2> model(problem_of(dimension, iso)), other(problem_of(dimension, neo));
+    const scene::Problem problem = problem_of(dimension, iso);
+    const scene::ElasticLaw scenes(problem.material, dimension);
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+      const dealii::Tensor<2, 2> F = random_F<2>(seed);
+      if (determinant(F) < 0.1) continue;
+      dealii::Tensor<2, 2> P, Q, R;
+      ASSERT_TRUE(setting.stress(F, P) && model.stress(F, Q) && other.stress(F, R));
+      EXPECT_EQ(P, Q);
+      EXPECT_GT((P - R).norm(), 1e-4 * P.norm());
+      Mat3 H = Mat3::Zero();
+      for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) H(i, j) = F[i][j] - (i == j ? 1 : 0);
+      }
+      const Mat3 S = scenes.stress(H);
+      for (int i = 0; i < 2; ++i) {
+        for (int j = 0; j < 2; ++j) EXPECT_NEAR(P[i][j], S(i, j), 1e-12 * P.norm());
+      }
+    }
+  }
 }
 
 }  // namespace
