@@ -13,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <thread>
 
 namespace concord::studies {
@@ -20,6 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double patience_s = 20;  ///< for a child to reach the end of its step after Ctrl-C
+
+constexpr int cannot_start = 127;  ///< exit code where exec or the loader failed
 
 struct Job {
   std::size_t row = 0;  ///< index into the rows
@@ -182,6 +185,10 @@ class Crew {
     if (how.code == 2) {
       stop();
       throw InputError(m_study.cases[row.case_index].where, "case", job.what, message);
+    }
+    if (how.code == cannot_start) {  // no result of any method
+      stop();
+      throw std::runtime_error(job.what + " could not start: " + message);
     }
     if (scene::interrupted()) return;  // stopped before its end
     read_row(row, job.folder, how, message);
