@@ -153,72 +153,108 @@ bool Leapfrog::settled(double fraction) {
   return residual <= fraction * fraction * scale;
 }
 
+/// Due `count` times evenly over [0, end], and at the end.
+class Leapfrog::Schedule {
+ public:
+  Schedule(int count, double end) : m_count(count), m_end(end) {}
+  bool due(double t) {
+    if (t >= m_end) return true;
+    if (m_count <= 0 || t < static_cast<double>(m_next) * m_end / m_count) return false;
+    m_next = static_cast<long>(t / m_end * m_count) + 1;
+    return true;
+  }
+
+ private:
+  int m_count;
+  double m_end;
+  long m_next = 1;
+};
+
+void Leapfrog::step(double dt) {
+  kick(0.5 * (m_dt_last + dt), m_damping);
+  drift(dt);
+  m_dt_last = dt;
+  evaluate();
+  if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
+}
+
+/// Writes the state unless it has been written.
+void Leapfrog::write(Recorder& recorder, bool row, bool frame) {
+  if (row && m_row_at != m_t) recorder.row(state());
+  if (frame && m_frame_at != m_t) recorder.frame(state());
+  if (row) m_row_at = m_t;
+  if (frame) m_frame_at = m_t;
+}
+
+/// After a step that failed: undoes its drift, so that the last good state can be written and
+/// told.
+void Leapfrog::step_back() {
+  for (std::size_t k = 0; k < m_u.size(); ++k) m_u[k] -= m_dt_last * m_v[k];
+  m_t -= m_dt_last;
+  m_dt_last = 0;
+  m_model.forces(m_u, m_v, m_f, m_executor);
+  m_loads.add(load_time(), m_f);
+}
+
+void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
+                       LeapfrogOutcome& outcome) {
+  const double end = options.end_time;
+  Schedule rows(options.history_rows, end), frames(options.frames, end);
+  double dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
+  double gradient = largest_gradient();
+  while (m_t < end) {
+    const auto begin = Clock::now();
+    const double left = end - m_t;
+    const double size = left / std::ceil(left / dt * (1 - 1e-12));
+    const bool last = left - size < 1e-9 * size;
+    step(size);
+    if (last) m_t = end;
+    ++outcome.steps;
+    outcome.t = m_t;
+    outcome.dt = size;
+    const bool look = outcome.steps % look_every == 0;
+    if (look && options.dt_fixed <= 0) {
+      const double now = largest_gradient();
+      if (std::abs(now - gradient) > options.reestimate_at) {
+        dt = critical_step(options.dt_factor);
+        gradient = now;
+      }
+    }
+    outcome.settled = look && options.stop_at_residual > 0 && m_t >= m_ramp &&
+                      settled(options.stop_at_residual);
+    outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count();
+    const bool row = rows.due(m_t), frame = frames.due(m_t);
+    write(recorder, row, frame);
+    if ((row || frame) && options.progress) {
+      options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
+    }
+    if (outcome.settled) break;
+    scene::check_interrupt();
+  }
+}
+
 void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
                    LeapfrogOutcome& outcome) {
   m_damping = options.damping;
-  const auto fail = [&](const BadState& bad) {
-    outcome.t = m_t;
-    return SolveError(bad.quantity, outcome.steps, m_t, bad.particle,
+  const auto failure = [&](const BadState& bad, long step) {
+    return SolveError(bad.quantity, step, m_t, bad.particle,
                       bad.quantity == "det F" ? "det F <= 0 or not a number" : "");
   };
   try {
     evaluate();
     m_work.start(load_time(), m_u, m_f);
-    double dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
-    double gradient = largest_gradient();
-    m_dt_last = 0;
-    recorder.row(state());
-    recorder.frame(state());
-    long rows = 1, frames = 1;
-    auto begin = Clock::now();
-    const auto pause = [&] {
-      outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count();
-    };
-    const double end = options.end_time;
-    for (outcome.steps = 0; m_t < end;) {
-      const double left = end - m_t;
-      const double step = left / std::ceil(left / dt * (1 - 1e-12));
-      kick(0.5 * (m_dt_last + step), options.damping);
-      drift(step);
-      if (end - m_t < 1e-9 * step) m_t = end;
-      m_dt_last = step;
-      evaluate();
-      if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
-      ++outcome.steps;
-      outcome.t = m_t;
-      outcome.dt = step;
-      const bool last = m_t >= end;
-      const bool row_due =
-          last || (options.history_rows > 0 && m_t >= rows * end / options.history_rows);
-      const bool frame_due =
-          last || (options.frames > 0 && m_t >= frames * end / options.frames);
-      if (row_due || frame_due) {
-        pause();
-        if (row_due)
-          recorder.row(state()), rows = static_cast<long>(m_t / end * options.history_rows) + 1;
-        if (frame_due)
-          recorder.frame(state()), frames = static_cast<long>(m_t / end * options.frames) + 1;
-        if (options.progress)
-          options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
-        begin = Clock::now();
-      }
-      if (options.dt_fixed <= 0 && outcome.steps % 64 == 0) {
-        const double now = largest_gradient();
-        if (std::abs(now - gradient) > options.reestimate_at) {
-          dt = critical_step(options.dt_factor);
-          gradient = now;
-        }
-      }
-      if (options.stop_at_residual > 0 && outcome.steps % 64 == 0 && m_t >= m_ramp &&
-          settled(options.stop_at_residual)) {
-        outcome.settled = true;
-        break;
-      }
-      scene::check_interrupt();
-    }
-    pause();
+    write(recorder, true, true);
+    advance(options, recorder, outcome);
   } catch (const BadState& bad) {
-    throw fail(bad);
+    const SolveError error = failure(bad, m_dt_last > 0 ? outcome.steps + 1 : 0);
+    if (m_dt_last > 0) {
+      step_back();
+      write(recorder, true, true);
+    }
+    throw error;
+  } catch (const Interrupted&) {
+    write(recorder, true, true);
+    throw;
   }
 }
 

@@ -57,7 +57,14 @@ class Leapfrog {
 
  private:
   double load_time() const { return m_ramp > 0 ? std::min(m_t / m_ramp, 1.0) : m_t; }
+  class Schedule;
+  static constexpr long look_every =
+      64;  ///< steps between looks at the deformation (for omega_max) and the residual
   void evaluate();
+  void step(double dt);
+  void step_back();
+  void advance(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
+  void write(Recorder& recorder, bool row, bool frame);
   void kick(double dt, double damping);
   void drift(double dt);
   double critical_step(double dt_factor);
@@ -75,6 +82,7 @@ class Leapfrog {
   Column m_v_full, m_acceleration;  ///< for output
   ExternalWork m_work;
   double m_t = 0, m_dt_last = 0, m_damping = 0;
+  double m_row_at = -1, m_frame_at = -1;  ///< times last written
 };
 
 }  // namespace concord::particle

@@ -141,8 +141,14 @@ TEST(Leapfrog, StopsAtNotANumberWithStepAndTime) {
   } catch (const SolveError& e) {
     EXPECT_EQ(e.quantity(), "det F");
     EXPECT_GT(e.step(), 0);
-    EXPECT_NEAR(e.time(), 0.05 * e.step(), 0.06);
+    EXPECT_NEAR(e.time(), 0.05 * e.step(), 1e-9);
     EXPECT_GE(e.particle(), 0);
+    // The last good state is what is left.
+    EXPECT_EQ(outcome.steps, e.step() - 1);
+    EXPECT_NEAR(leapfrog.state().t, 0.05 * outcome.steps, 1e-9);
+    std::vector<Mat3> H(body.n);
+    model.gradients(leapfrog.state().u, H);
+    for (const Mat3& h : H) EXPECT_GT((Mat3::Identity() + h).determinant(), 0);
   }
 }
 
