@@ -43,6 +43,16 @@ constexpr int stride_of(int dim) { return dim == 3 ? 4 : 2; }
 CONCORD_INLINE v4d broadcast(double s, v4d) { return v4d{s, s, s, s}; }
 CONCORD_INLINE v2d broadcast(double s, v2d) { return v2d{s, s}; }
 
+/// Lane k of a vector in all lanes, without a way through memory.
+template <int k> CONCORD_INLINE v4d lane(v4d a) {
+  typedef long long v4i __attribute__((vector_size(32)));
+  return __builtin_shuffle(a, v4i{k, k, k, k});
+}
+template <int k> CONCORD_INLINE v2d lane(v2d a) {
+  typedef long long v2i __attribute__((vector_size(16)));
+  return __builtin_shuffle(a, v2i{k, k});
+}
+
 /// Sum over the lanes in a fixed order.
 CONCORD_INLINE double lane_sum(v4d a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 CONCORD_INLINE double lane_sum(v2d a) { return a[0] + a[1]; }

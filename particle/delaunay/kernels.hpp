@@ -25,6 +25,18 @@ template <int Dim> struct Tensor {
   CONCORD_INLINE void add_outer(Vec<Dim> d, const double* B) {
     for (int k = 0; k < Dim; ++k) column[k] += d * broadcast(B[k], Vec<Dim>{});
   }
+  /// this += d (x) X, X in a register
+  CONCORD_INLINE void add_outer(Vec<Dim> d, Vec<Dim> X) {
+    column[0] += d * lane<0>(X);
+    column[1] += d * lane<1>(X);
+    if constexpr (Dim == 3) column[2] += d * lane<2>(X);
+  }
+  /// this X, X in a register
+  CONCORD_INLINE Vec<Dim> times(Vec<Dim> X) const {
+    Vec<Dim> r = column[0] * lane<0>(X) + column[1] * lane<1>(X);
+    if constexpr (Dim == 3) r += column[2] * lane<2>(X);
+    return r;
+  }
   /// this B
   CONCORD_INLINE Vec<Dim> times(const double* B) const {
     Vec<Dim> r = column[0] * broadcast(B[0], Vec<Dim>{});
@@ -104,9 +116,7 @@ CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameCons
 template <int Dim, bool Isotropic>
 CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum,
                                 double K_n, double K_t, Vec<Dim>& p, Vec<Dim>& q) {
-  double X_component[Lanes<Dim>::stride];
-  particle::store(X_component, X_ab);
-  const Vec<Dim> local = u_ab - H_sum.times(X_component) * broadcast(0.5, Vec<Dim>{});
+  const Vec<Dim> local = u_ab - H_sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
   if constexpr (Isotropic) {
     p = q = local * broadcast(K_n, Vec<Dim>{});
   } else {
@@ -154,14 +164,12 @@ CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r,
     Vec<Dim> p, q;
     contact_law<Dim, Isotropic>(u_ab, X_ab, H_sum, factors.normal * area_over_length,
                                 factors.tangential * area_over_length, p, q);
-    double X_component[Lanes<Dim>::stride];
-    particle::store(X_component, X_ab);
     f_a += p;
-    P_a.add_outer(q * broadcast(-w_a, Vec<Dim>{}), X_component);
+    P_a.add_outer(q * broadcast(-w_a, Vec<Dim>{}), X_ab);
     if (k >= cut) continue;
     store(s.f + b * vector_size<Dim>, load<Vec<Dim>>(s.f + b * vector_size<Dim>) - p);
     Tensor<Dim> P_b = Tensor<Dim>::load(s.P + b * tensor_size<Dim>);
-    P_b.add_outer(q * broadcast(-0.5 * s.inverse_V[b], Vec<Dim>{}), X_component);
+    P_b.add_outer(q * broadcast(-0.5 * s.inverse_V[b], Vec<Dim>{}), X_ab);
     P_b.store(s.P + b * tensor_size<Dim>);
   }
   P_a.store(s.P + a * tensor_size<Dim>);
