@@ -189,9 +189,7 @@ Plot read_plot(StrictTable table) {
 Picture read_picture(StrictTable table) {
   Picture picture;
   picture.selector = read_selector(table);
-  const auto resolution = table.optional_number("resolution");
-  if (!resolution) table.missing("resolution", "a resolution that is run");
-  picture.resolution = *resolution;
+  picture.resolution = table.optional_number("resolution");
   picture.color = table.text("color");
   picture.caption = table.text_or("caption", "");
   picture.scale_displacement = table.number_or("scale_displacement", 1);

@@ -75,7 +75,7 @@ struct Plot {
 
 struct Picture {
   Selector selector;
-  double resolution = 0;
+  std::optional<double> resolution;  ///< absent: the finest that has frames
   std::string color, caption;
   double scale_displacement = 1;
 };

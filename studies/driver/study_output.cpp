@@ -140,10 +140,10 @@ json plot_json(const Plot& plot) {
 }
 
 json picture_json(const Picture& picture) {
-  json object{{"resolution", picture.resolution},
-              {"color", picture.color},
+  json object{{"color", picture.color},
               {"scale_displacement", picture.scale_displacement},
               {"caption", picture.caption}};
+  if (picture.resolution) object["resolution"] = *picture.resolution;
   put(object, picture.selector);
   return object;
 }
