@@ -146,12 +146,15 @@ ParticleMethod::ParticleMethod(scene::MethodInfo own) : m_info(std::move(own)) {
   m_info.parameters.insert(m_info.parameters.end(), shared.begin(), shared.end());
 }
 
+void ParticleMethod::divide(Body&, const scene::Problem&, const scene::Settings&) const {}
+
 void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
                          scene::Result& result) const {
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
   Body body = make_body(problem, request.h, request.perturb, request.seed);
+  divide(body, problem, settings);
   const std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, body);

@@ -21,6 +21,11 @@ class ParticleMethod : public scene::Method {
   void run(const scene::Problem& problem, const scene::RunRequest& request,
            scene::Result& result) const final;
 
+  /// How this formulation divides the body among its particles: may replace V and m of `body`,
+  /// which come with the barycentric volumes sum |t|/(n+1). Called before make_model.
+  virtual void divide(Body& body, const scene::Problem& problem,
+                      const scene::Settings& settings) const;
+
   /// Forces of this formulation on `body`. Throws InputError for settings that it cannot serve.
   virtual std::unique_ptr<ForceModel> make_model(const Body& body,
                                                  const scene::Problem& problem,
