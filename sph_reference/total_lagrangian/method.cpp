@@ -2,6 +2,7 @@
 
 #include "particle/core/particle_method.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
+#include "sph_reference/total_lagrangian/volumes.hpp"
 
 namespace concord::sph {
 namespace {
@@ -34,6 +35,9 @@ scene::MethodInfo tlsph_info() {
            choice("penalty", "ganzenmuller", {"ganzenmuller", "potential"},
                   "form of the penalty: along the current bond and without potential (TLS.10), or from the energy "
                   "1/2 k |u_loc|^2 a pair (TLS.11)"),
+           choice("planes", "mirror", {"mirror", "truncated"},
+                  "mirror: images of particles continue the body behind symmetric and antisymmetric planes, (TLS.14) "
+                  "to (TLS.17); truncated: none. Static scenes are always truncated: the tangent knows no images"),
            number("alpha", "0", 0, 1e6, ">= 0", "linear coefficient of Monaghan's artificial viscosity (TLS.12)"),
            number("beta", "0", 0, 1e6, ">= 0", "quadratic coefficient of Monaghan's artificial viscosity (TLS.12)")},
           {{"equilibrium patch test",
@@ -57,6 +61,8 @@ class TlsphMethod final : public particle::ParticleMethod {
         settings.word("penalty") == "potential" ? PenaltyForm::potential : PenaltyForm::ganzenmueller;
     options.alpha = settings.number("alpha");
     options.beta = settings.number("beta");
+    if (settings.word("planes") == "mirror" && !problem.is_static) options.planes = symmetry_planes(problem, body);
+    if (!options.planes.empty()) options.V = voronoi_volumes(body);  // (TLS.17)
     return std::make_unique<TotalLagrangianSph>(body, problem, options, executor);
   }
 };

@@ -30,35 +30,42 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
       m_material(particle::kernel_material(problem)),
       m_rho0(problem.material.rho0),
       m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
-      m_rows(find_neighbours(body, m_kernel, options.psi * problem.material.E, executor)),
+      m_V(options.V.empty() ? body.V : options.V),
+      m_points(body, options.planes, m_kernel.radius()),
+      m_rows(find_neighbours(m_points, m_V, m_kernel, options.psi * problem.material.E, executor)),
       m_loops(choose_loops(body.dim, m_material.law, penalty(), viscous())),
-      m_records(static_cast<std::size_t>(body.n) * 2 * body.dim * body.stride, 0.0),
+      m_records(static_cast<std::size_t>(m_points.count()) * 2 * body.dim * body.stride, 0.0),
+      m_u(m_points.make_column()),
+      m_v(viscous() ? m_points.make_column() : Column()),
       m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
 
-State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v, std::span<double> f) {
-  return {m_body.X.data(), u.data(), v.data(), m_body.V.data(), m_records.data(), f.data()};
+State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v, std::span<double> f,
+                                const Executor& executor) {
+  const double* all_v = viscous() && !v.empty() ? m_points.extend(v, m_v, executor) : v.data();
+  return {m_points.positions(), m_points.extend(u, m_u, executor), all_v, m_V.data(), m_records.data(), f.data()};
 }
 
 void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
                                 const Executor& executor) {
-  const State s = state(u, v, f);
-  if (penalty() == PenaltyForm::potential) update_gradients(u, executor);
+  const State s = state(u, v, f, executor);
+  if (penalty() == PenaltyForm::potential) update_gradients(s, executor);
   for_ranges(m_body.n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
     m_bad[k] = m_loops.stresses(m_rows, first, last, m_material.lame, s);
   });
   for (const Index a : m_bad) {
     if (a >= 0) throw particle::BadState{"det F", a};
   }
+  m_points.reflect_records(m_records.data(), executor);
   for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
     m_loops.forces(m_rows, first, last, m_viscosity, s);
   });
 }
 
-void TotalLagrangianSph::update_gradients(std::span<const double> u, const Executor& executor) {
-  const State s = state(u, {}, {});
+void TotalLagrangianSph::update_gradients(const State& s, const Executor& executor) {
   for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
     m_loops.gradients(m_rows, first, last, s);
   });
+  m_points.reflect_records(m_records.data(), executor);
 }
 
 /// H_a as the records hold it, without out-of-plane part.
@@ -73,40 +80,43 @@ Mat3 TotalLagrangianSph::plane_gradient(Index a) const {
 }
 
 void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H) {
-  update_gradients(u, Executor(1));
+  const Executor one_thread(1);
+  update_gradients(state(u, {}, {}, one_thread), one_thread);
   for (Index a = 0; a < m_body.n; ++a) H[a] = m_law.complete(plane_gradient(a));
 }
 
 /// l_ab (TLS.8) from the gradients in the records.
-Vec3 TotalLagrangianSph::local_displacement(std::span<const double> u, Index a, Index b) const {
+Vec3 TotalLagrangianSph::local_displacement(const double* u, Index a, Index b) const {
   Vec3 u_ab = Vec3::Zero();
   for (int i = 0; i < m_body.dim; ++i) {
     u_ab[i] = u[static_cast<std::size_t>(b) * m_body.stride + i] - u[static_cast<std::size_t>(a) * m_body.stride + i];
   }
-  return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) * (m_body.position(b) - m_body.position(a));
+  return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) * (m_points.position(b) - m_points.position(a));
 }
 
 particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const Executor& executor) {
-  update_gradients(u, executor);
+  const State s = state(u, {}, {}, executor);
+  update_gradients(s, executor);
   particle::Energies e;
   e.internal = executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-      sum += m_body.V[a] * m_law.energy(plane_gradient(a));
+      sum += m_V[a] * m_law.energy(plane_gradient(a));
     }
     return sum;
   });
-  if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(u, executor);
+  if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(s.u, executor);
   return e;
 }
 
-/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two rows.
-double TotalLagrangianSph::penalty_energy(std::span<const double> u, const Executor& executor) const {
+/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two rows, as do a pair with an image and
+/// its reflection. A particle and its own image stand in one: theirs is half a pair (TLS.16).
+double TotalLagrangianSph::penalty_energy(const double* u, const Executor& executor) const {
   return executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
       for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
-        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
+        sum += 0.25 * m_V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
       }
     }
     return sum;

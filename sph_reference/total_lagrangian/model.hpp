@@ -16,6 +16,8 @@ struct TlsphOptions {
   double psi = 0.07;  ///< penalty factor; 0: no penalty, and no cost
   double alpha = 0;   ///< linear viscosity; 0: none
   double beta = 0;    ///< quadratic viscosity
+  std::vector<Plane> planes{};  ///< with mirror particles behind them
+  std::vector<double> V{};      ///< volumes of the particles [m^3]; empty: the body's
 };
 
 class TotalLagrangianSph final : public particle::ForceModel {
@@ -35,14 +37,17 @@ class TotalLagrangianSph final : public particle::ForceModel {
 
   const Neighbours& neighbours() const { return m_rows; }
   const Kernel& kernel() const { return m_kernel; }
+  const Points& points() const { return m_points; }
 
  private:
   PenaltyForm penalty() const { return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none; }
   Mat3 plane_gradient(Index a) const;
-  void update_gradients(std::span<const double> u, const Executor& executor);
-  Vec3 local_displacement(std::span<const double> u, Index a, Index b) const;
-  double penalty_energy(std::span<const double> u, const Executor& executor) const;
-  State state(std::span<const double> u, std::span<const double> v, std::span<double> f);
+  /// State at u and v, continued to the images.
+  State state(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor);
+  /// H_a of all points into the records.
+  void update_gradients(const State& s, const Executor& executor);
+  Vec3 local_displacement(const double* u, Index a, Index b) const;
+  double penalty_energy(const double* u, const Executor& executor) const;
 
   TlsphOptions m_options;
   Kernel m_kernel;
@@ -50,9 +55,12 @@ class TotalLagrangianSph final : public particle::ForceModel {
   particle::KernelMaterial m_material;
   double m_rho0;
   Viscosity m_viscosity;
+  std::vector<double> m_V;  ///< volumes, with thickness [m^3]
+  Points m_points;
   Neighbours m_rows;
   Loops m_loops;
   Column m_records;          ///< see State
+  Column m_u, m_v;           ///< of all points, where there are images
   std::vector<Index> m_bad;  ///< first bad particle of each range
 };
 

@@ -12,23 +12,23 @@
 namespace concord::sph {
 namespace {
 
-/// Particles by cells of edge >= R, so that neighbours lie in the 3^dim cells around.
+/// Points by cells of edge >= R, so that neighbours lie in the 3^dim cells around.
 class Grid {
  public:
-  Grid(const Body& body, double R) : m_body(body), m_low(Vec3::Constant(1e300)) {
+  Grid(const Points& points, double R) : m_points(points), m_low(Vec3::Constant(1e300)) {
     Vec3 high = Vec3::Constant(-1e300);
-    for (Index a = 0; a < body.n; ++a) {
-      m_low = m_low.cwiseMin(body.position(a));
-      high = high.cwiseMax(body.position(a));
+    for (Index a = 0; a < points.count(); ++a) {
+      m_low = m_low.cwiseMin(points.position(a));
+      high = high.cwiseMax(points.position(a));
     }
-    // Thin or scattered bodies: no more cells than particles, so that memory stays linear.
+    // Thin or scattered bodies: no more cells than points, so that memory stays linear.
     m_edge = R;
-    while (cells_at(high, m_edge) > std::max<double>(64, body.n)) m_edge *= 1.26;
+    while (cells_at(high, m_edge) > std::max<double>(64, points.count())) m_edge *= 1.26;
     for (int i = 0; i < 3; ++i) m_cells[i] = extent(high, i, m_edge);
     fill();
   }
 
-  /// visit(b, X_b) for every particle in the cells around X.
+  /// visit(b, X_b) for every point in the cells around X.
   template <class Visit>
   void around(const Vec3& X, const Visit& visit) const {
     const std::array<Index, 3> c = cell_of(X);
@@ -36,7 +36,7 @@ class Grid {
       for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
         const Index first = number({std::max(c[0] - 1, 0), j, k});
         const Index last = number({std::min(c[0] + 1, m_cells[0] - 1), j, k});
-        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s) visit(m_particles[s], m_positions[s]);
+        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s) visit(m_sorted[s], m_positions[s]);
       }
     }
   }
@@ -62,51 +62,54 @@ class Grid {
   }
   void fill() {
     m_begin.assign(static_cast<std::size_t>(m_cells[0]) * m_cells[1] * m_cells[2] + 1, 0);
-    std::vector<Index> cell(m_body.n);
-    for (Index a = 0; a < m_body.n; ++a) {
-      cell[a] = number(cell_of(m_body.position(a)));
+    std::vector<Index> cell(m_points.count());
+    for (Index a = 0; a < m_points.count(); ++a) {
+      cell[a] = number(cell_of(m_points.position(a)));
       ++m_begin[cell[a] + 1];
     }
     for (std::size_t c = 1; c < m_begin.size(); ++c) m_begin[c] += m_begin[c - 1];
-    m_particles.resize(m_body.n);
+    m_sorted.resize(m_points.count());
     std::vector<Index> next(m_begin.begin(), m_begin.end() - 1);
-    m_positions.resize(m_body.n);
-    for (Index a = 0; a < m_body.n; ++a) {
-      m_positions[next[cell[a]]] = m_body.position(a);
-      m_particles[next[cell[a]]++] = a;
+    m_positions.resize(m_points.count());
+    for (Index a = 0; a < m_points.count(); ++a) {
+      m_positions[next[cell[a]]] = m_points.position(a);
+      m_sorted[next[cell[a]]++] = a;
     }
   }
 
-  const Body& m_body;
+  const Points& m_points;
   Vec3 m_low;
   double m_edge = 0;
   std::array<Index, 3> m_cells{};
-  std::vector<Index> m_begin, m_particles;  ///< particles of cell c: m_particles[m_begin[c]] ...
-  std::vector<Vec3> m_positions;            ///< beside m_particles
+  std::vector<Index> m_begin, m_sorted;  ///< points of cell c: m_sorted[m_begin[c]] ...
+  std::vector<Vec3> m_positions;            ///< beside m_sorted
 };
 
 /// Appends the neighbours of particles [first, last) to `found`, sorted by number, and counts them in begin[a + 1]. A lattice has pairs
-/// at R itself, where W and W' vanish: round-off shall not decide whether they count.
-void append_rows(const Body& body, const Grid& grid, double R, std::size_t first, std::size_t last,
+/// at R itself, where W and W' vanish: round-off shall not decide whether they count. Nor does a particle count its image at its own
+/// place, to which X_ab = 0.
+void append_rows(const Points& points, const Grid& grid, double R, std::size_t first, std::size_t last,
                  std::vector<std::size_t>& begin, std::vector<Index>& found) {
-  const double limit = R * R * (1 - 1e-10);
+  const double limit = R * R * (1 - 1e-10), same_place = 1e-20 * R * R;
   for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-    const Vec3 X_a = body.position(a);
+    const Vec3 X_a = points.position(a);
     const std::size_t start = found.size();
     grid.around(X_a, [&](Index b, const Vec3& X_b) {
-      if ((X_b - X_a).squaredNorm() < limit && b != a) found.push_back(b);
+      const double r2 = (X_b - X_a).squaredNorm();
+      if (r2 < limit && b != a && (r2 > same_place || points.source(b) != a)) found.push_back(b);
     });
     std::sort(found.begin() + static_cast<std::ptrdiff_t>(start), found.end());
     begin[a + 1] = found.size() - start;
   }
 }
 
-void find_rows(const Body& body, const Kernel& kernel, const Executor& executor, Neighbours& rows) {
-  const Grid grid(body, kernel.radius());
+void find_rows(const Points& points, const Kernel& kernel, const Executor& executor, Neighbours& rows) {
+  const Body& body = points.body();
+  const Grid grid(points, kernel.radius());
   rows.begin.assign(body.n + 1, 0);
   std::vector<std::vector<Index>> found(Executor::pieces(body.n));
   executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    append_rows(body, grid, kernel.radius(), first, last, rows.begin, found[first / Executor::piece]);
+    append_rows(points, grid, kernel.radius(), first, last, rows.begin, found[first / Executor::piece]);
   });
   for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
   rows.other.reserve(rows.count());
@@ -117,18 +120,19 @@ void find_rows(const Body& body, const Kernel& kernel, const Executor& executor,
 }
 
 /// K_a (TLS.4) of a row whose weights are there.
-Mat3 moment(const Body& body, const Neighbours& rows, Index a) {
+Mat3 moment(const Points& points, const Neighbours& rows, Index a) {
   Mat3 K = Mat3::Zero();
   for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
-    const Vec3 X_ab = body.position(rows.other[k]) - body.position(a);
+    const Vec3 X_ab = points.position(rows.other[k]) - points.position(a);
     K += rows.weight[k] * X_ab * X_ab.transpose();
   }
   return K;
 }
 
 /// Inverts K_a into its padded columns; false if the neighbours do not span the space. 1e-8: half of the digits are lost.
-bool invert_moment(const Body& body, Neighbours& rows, Index a) {
-  Mat3 K = moment(body, rows, a);
+bool invert_moment(const Points& points, Neighbours& rows, Index a) {
+  const Body& body = points.body();
+  Mat3 K = moment(points, rows, a);
   if (body.dim == 2) K(2, 2) = 0.5 * K.trace();  // any value between the eigenvalues: leaves the plane's inverse alone
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(K);
   const Vec3& lambda = eigen.eigenvalues();
@@ -153,9 +157,11 @@ bool invert_moment(const Body& body, Neighbours& rows, Index a) {
 
 }  // namespace
 
-Neighbours find_neighbours(const Body& body, const Kernel& kernel, double penalty, const Executor& executor) {
+Neighbours find_neighbours(const Points& points, std::span<const double> V, const Kernel& kernel, double penalty,
+                           const Executor& executor) {
+  const Body& body = points.body();
   Neighbours rows;
-  find_rows(body, kernel, executor, rows);
+  find_rows(points, kernel, executor, rows);
   rows.weight.assign(rows.count() + Neighbours::padding, 0.0);
   rows.stiffness.assign(penalty > 0 ? rows.count() + Neighbours::padding : 0, 0.0);
   rows.inverse_moment.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
@@ -164,12 +170,13 @@ Neighbours find_neighbours(const Body& body, const Kernel& kernel, double penalt
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
       for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
         const Index b = rows.other[k];
-        const double r = (body.position(b) - body.position(a)).norm(), A_b = body.V[b] / body.thickness;
+        const double r = (points.position(b) - points.position(a)).norm();
+        const double A_b = V[points.source(b)] / body.thickness;
         rows.weight[k] = A_b * kernel.slope(r);
         if (penalty > 0) rows.stiffness[k] = penalty * A_b * kernel.value(r) / (r * r);
       }
       Index& bad = singular[first / Executor::piece];
-      if (!invert_moment(body, rows, a) && bad < 0) bad = a;
+      if (!invert_moment(points, rows, a) && bad < 0) bad = a;
     }
   });
   for (const Index a : singular) {

@@ -1,21 +1,17 @@
 #pragma once
 // Who interacts with whom, with which weight, and the correction that makes gradients of affine fields exact.
 
-#include "particle/core/body.hpp"
-#include "particle/core/parallel.hpp"
 #include "sph_reference/total_lagrangian/kernel.hpp"
+#include "sph_reference/total_lagrangian/planes.hpp"
 
 #include <span>
 #include <vector>
 
 namespace concord::sph {
 
-using particle::Body;
-using particle::Column;
-using particle::Executor;
-
 /// Directed neighbours in rows: each particle lists all b != a with |X_ab| < R, sorted by number. A pair stands in two rows, so
-/// that every particle sums its own forces and threads never write to the same place.
+/// that every particle sums its own forces and threads never write to the same place. Images (Points) are neighbours like others and have no
+/// rows; a particle's image at its own place is none.
 struct Neighbours {
   std::vector<std::size_t> begin;  ///< row of a: [begin[a], begin[a+1])
   std::vector<Index> other;        ///< b
@@ -28,9 +24,11 @@ struct Neighbours {
   std::size_t count() const { return begin.back(); }
 };
 
-/// Finds all pairs closer than the kernel's support with a grid of cells, in time linear in n, and weighs them. penalty: psi E [Pa];
+/// Finds all pairs closer than the kernel's support with a grid of cells, in time linear in n, and weighs them. V: volumes of the particles, with
+/// thickness [m^3]; penalty: psi E [Pa];
 /// 0 leaves `stiffness` empty. Throws InputError (key tlsph.support) where neighbours do not span the space, so that K_a
 /// has no inverse: the support must grow.
-Neighbours find_neighbours(const Body& body, const Kernel& kernel, double penalty, const Executor& executor);
+Neighbours find_neighbours(const Points& points, std::span<const double> V, const Kernel& kernel, double penalty,
+                           const Executor& executor);
 
 }  // namespace concord::sph

@@ -3,6 +3,8 @@
 #include "particle/core/tangent.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
 
+#include <stdexcept>
+
 namespace concord::sph {
 namespace {
 
@@ -44,9 +46,13 @@ particle::PairTangent ganzenmueller_pair(double k, const Vec3& l, const Vec3& x)
 }  // namespace
 
 Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> u) {
-  update_gradients(u, Executor(1));
+  if (m_points.images() > 0) throw std::logic_error("tlsph: tangent with mirror particles");
+  const Executor one_thread(1);
+  update_gradients(state(u, {}, {}, one_thread), one_thread);
   std::vector<particle::Moduli> moduli(m_body.n);
-  for (Index a = 0; a < m_body.n; ++a) moduli[a] = m_law.tangent(plane_gradient(a));
+  for (Index a = 0; a < m_body.n; ++a) {
+    moduli[a] = m_V[a] / m_body.V[a] * m_law.tangent(plane_gradient(a));  // the assembly multiplies by the body's
+  }
 
   std::vector<particle::PairTangent> pairs;
   const bool penalised = penalty() != PenaltyForm::none;
@@ -55,8 +61,8 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
     for (std::size_t i = m_rows.begin[a]; i < m_rows.begin[a + 1]; ++i) {
       const Index b = m_rows.other[i];
       if (b < a) continue;
-      const double k = m_body.V[a] * m_rows.stiffness[i];
-      const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(u, a, b);
+      const double k = m_V[a] * m_rows.stiffness[i];
+      const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(u.data(), a, b);
       const Vec3 x_ab = l + X_ab + 0.5 * (plane_gradient(a) + plane_gradient(b)) * X_ab;
       particle::PairTangent pair = penalty() == PenaltyForm::potential ? potential_pair(k)
                                                                                : ganzenmueller_pair(k, l, x_ab);

@@ -22,7 +22,7 @@ TEST(Neighbours, AreAllPairsWithinTheSupport) {
   for (const int dim : {2, 3}) {
     const Body body = lattice(dim, dim == 3 ? 7 : 15, 0.25);
     const Kernel kernel(KernelShape::cubic_spline, dim, 0.23);
-    const Neighbours rows = find_neighbours(body, kernel, 1, Executor(2));
+    const Neighbours rows = find_neighbours(body, body.V, kernel, 1, Executor(2));
     for (Index a = 0; a < body.n; ++a) {
       std::vector<Index> expected;
       for (Index b = 0; b < body.n; ++b) {
@@ -179,7 +179,7 @@ TEST(State, TurnedInsideOutIsReportedWithItsLowestParticle) {
 
 TEST(InstructionSets, AgreeToRoundOff) {
   const Body body = lattice(3, 6, 0.25);
-  const Neighbours rows = find_neighbours(body, Kernel(KernelShape::cubic_spline, 3, 0.24), 1e6, one_thread);
+  const Neighbours rows = find_neighbours(body, body.V, Kernel(KernelShape::cubic_spline, 3, 0.24), 1e6, one_thread);
   const Column u = random_column(body, 0.004, 1), v = random_column(body, 10, 2);
   const auto run = [&](Isa isa, PenaltyForm penalty) {
     Column records(static_cast<std::size_t>(body.n) * 24, 0.0), f(u.size(), 0.0);
