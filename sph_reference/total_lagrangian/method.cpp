@@ -62,7 +62,7 @@ class TlsphMethod final : public particle::ParticleMethod {
     options.alpha = settings.number("alpha");
     options.beta = settings.number("beta");
     if (settings.word("planes") == "mirror" && !problem.is_static) options.planes = symmetry_planes(problem, body);
-    if (!options.planes.empty()) options.V = voronoi_volumes(body);  // (TLS.17)
+    if (!options.planes.empty()) options.V = volumes_at_planes(body, options.planes);  // (TLS.17)
     return std::make_unique<TotalLagrangianSph>(body, problem, options, executor);
   }
 };

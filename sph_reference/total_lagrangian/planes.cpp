@@ -36,12 +36,16 @@ std::map<Key, Face> faces_of(const scene::Problem& problem, const Body& body) {
 }
 
 [[noreturn]] void refuse(const Face& face, const Plane& plane, const char* why) {
-  throw InputError(face.where, "tlsph.planes", fmt::format("mirror at {} = {:.6g} m, {}", "XYZ"[plane.axis], plane.coordinate, why),
-                   "truncated; or a plane on which the body ends, with one condition on its whole face there");
+  throw InputError(
+      face.where, "tlsph.planes",
+      fmt::format("mirror at {} = {:.6g} m, {}", "XYZ"[plane.axis], plane.coordinate, why),
+      "truncated; or a plane on which the body ends, with one condition on its whole face "
+      "there");
 }
 
 /// Throws where images at the plane would not continue the body.
-void check(const scene::Problem& problem, const Body& body, const Face& face, const Plane& plane) {
+void check(const scene::Problem& problem, const Body& body, const Face& face,
+           const Plane& plane) {
   const double near = 1e-9 * body.h;
   bool below = false, above = false;
   for (std::size_t node = 0; node < body.mesh.nodes.size(); ++node) {
@@ -55,8 +59,10 @@ void check(const scene::Problem& problem, const Body& body, const Face& face, co
   for (const scene::BoundaryCondition& bc : problem.boundaries) {
     if (!plane.antisymmetric || bc.kind != scene::BoundaryKind::traction) continue;
     const std::vector<Index> loaded = body.mesh.group_nodes(bc.group, bc.where);
-    if (std::all_of(loaded.begin(), loaded.end(), [&](Index node) { return face.nodes.count(node) > 0; }))
-      refuse(face, plane, "an antisymmetric one under traction, on which normal strain does not vanish");
+    if (std::all_of(loaded.begin(), loaded.end(),
+                    [&](Index node) { return face.nodes.count(node) > 0; }))
+      refuse(face, plane,
+             "an antisymmetric one under traction, on which normal strain does not vanish");
   }
 }
 
@@ -106,9 +112,10 @@ bool Points::reaches(const Map& map, double R, const Vec3& low, const Vec3& high
   return true;
 }
 
-/// All products of reflections whose images are within reach. Along one axis the distance grows with the number of factors, so
-/// that what is out of reach has no products within.
-void Points::find_maps(const std::vector<Plane>& planes, double R, const Vec3& low, const Vec3& high) {
+/// All products of reflections whose images are within reach. Along one axis the distance grows
+/// with the number of factors, so that what is out of reach has no products within.
+void Points::find_maps(const std::vector<Plane>& planes, double R, const Vec3& low,
+                       const Vec3& high) {
   const auto same = [&](const Map& p, const Map& q) {
     for (int i = 0; i < 3; ++i) {
       if (p.R[i] != q.R[i] || std::abs(p.t[i] - q.t[i]) > 1e-9 * R) return false;
@@ -122,13 +129,15 @@ void Points::find_maps(const std::vector<Plane>& planes, double R, const Vec3& l
       next.R[plane.axis] *= -1;
       next.t[plane.axis] = 2 * plane.coordinate - next.t[plane.axis];
       if (plane.antisymmetric) next.sign *= -1;
-      const bool known = std::any_of(m_maps.begin(), m_maps.end(), [&](const Map& map) { return same(map, next); });
+      const bool known = std::any_of(m_maps.begin(), m_maps.end(),
+                                     [&](const Map& map) { return same(map, next); });
       if (!known && reaches(next, R, low, high)) m_maps.push_back(next);
     }
   }
 }
 
-const double* Points::extend(std::span<const double> values, Column& extended, const Executor& executor) const {
+const double* Points::extend(std::span<const double> values, Column& extended,
+                             const Executor& executor) const {
   if (m_images.empty()) return values.data();
   const std::size_t stride = m_body->stride, own = static_cast<std::size_t>(m_body->n) * stride;
   executor.for_pieces(own, [&](std::size_t first, std::size_t last) {

@@ -9,7 +9,8 @@
 namespace concord::sph {
 namespace {
 
-/// The point at equal distances from the vertices; rows of `edges`: from the first vertex to the others.
+/// The point at equal distances from the vertices; rows of `edges`: from the first vertex to
+/// the others.
 Vec3 circumcentre(const Vec3& first, const Mat3& edges, int dim) {
   Vec3 half_squares = 0.5 * edges.rowwise().squaredNorm();
   if (dim == 2) half_squares[2] = 0;
@@ -27,7 +28,8 @@ int parity(int i, int j, int k) {
 }
 
 /// Adds to share[i] the pieces (p_i, mid_ij, C) of a triangle with circumcentre C.
-void share_triangle(const std::array<Vec3, 4>& p, const Vec3& C, double orientation, std::array<double, 4>& share) {
+void share_triangle(const std::array<Vec3, 4>& p, const Vec3& C, double orientation,
+                    std::array<double, 4>& share) {
   for (int i = 0; i < 3; ++i) {
     for (const int next : {1, 2}) {
       const int j = (i + next) % 3;
@@ -38,7 +40,8 @@ void share_triangle(const std::array<Vec3, 4>& p, const Vec3& C, double orientat
 }
 
 /// Adds to share[i] the pieces (p_i, mid_ij, C_ijk, C) of a tetrahedron with circumcentre C.
-void share_tetrahedron(const std::array<Vec3, 4>& p, const Vec3& C, double orientation, std::array<double, 4>& share) {
+void share_tetrahedron(const std::array<Vec3, 4>& p, const Vec3& C, double orientation,
+                       std::array<double, 4>& share) {
   for (int l = 0; l < 4; ++l) {
     const std::array<int, 3> face{(l + 1) % 4, (l + 2) % 4, (l + 3) % 4};
     const Vec3 normal = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
@@ -56,7 +59,7 @@ void share_tetrahedron(const std::array<Vec3, 4>& p, const Vec3& C, double orien
 
 }  // namespace
 
-std::vector<double> voronoi_volumes(const particle::Body& body) {
+std::vector<double> voronoi_volumes(const Body& body) {
   const particle::Triangulation& t = body.triangulation;
   const int vertices = body.dim + 1;
   std::vector<double> V(body.n, 0.0);
@@ -69,7 +72,8 @@ std::vector<double> voronoi_volumes(const particle::Body& body) {
       if (i > 0) edges.row(i - 1) = p[i] - p[0];
     }
     const double det = edges.determinant();
-    if (std::abs(det) < 1e-10 * std::pow(body.h, body.dim)) continue;  // flat cells of lattices: nothing to share
+    if (std::abs(det) < 1e-10 * std::pow(body.h, body.dim))
+      continue;  // flat cells of lattices: nothing to share
     std::array<double, 4> share{};
     const Vec3 C = circumcentre(p[0], edges, body.dim);
     (body.dim == 2 ? share_triangle : share_tetrahedron)(p, C, det > 0 ? 1 : -1, share);
@@ -77,6 +81,17 @@ std::vector<double> voronoi_volumes(const particle::Body& body) {
   }
   for (Index a = 0; a < body.n; ++a) {
     if (!(V[a] > 0)) V[a] = body.V[a];
+  }
+  return V;
+}
+
+std::vector<double> volumes_at_planes(const Body& body, const std::vector<Plane>& planes) {
+  std::vector<double> V = voronoi_volumes(body);
+  for (Index a = 0; a < body.n; ++a) {
+    int meeting = 0;
+    for (const Plane& plane : planes)
+      meeting += body.position(a)[plane.axis] == plane.coordinate ? 1 : 0;
+    if (meeting < 2) V[a] = body.V[a];
   }
   return V;
 }

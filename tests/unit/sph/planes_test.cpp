@@ -1,5 +1,5 @@
-// Mirror particles: the force as the derivative of the energy, affine fields, the whole body of which a part is computed, threads,
-// scenes with and without planes, Voronoi volumes.
+// Mirror particles: the force as the derivative of the energy, affine fields, the whole body of
+// which a part is computed, threads, scenes with and without planes, Voronoi volumes.
 
 #include "sample.hpp"
 
@@ -29,7 +29,8 @@ Body box(int dim, int count) {
 /// Planes at X_i = 0 and X_i = L; antisymmetric: the bits of those of them in turn.
 std::vector<Plane> planes_of(int dim, int count, unsigned antisymmetric) {
   std::vector<Plane> planes;
-  for (int i = 0; i < 2 * dim; ++i) planes.push_back({i / 2, i % 2 * 0.1 * (count - 1), (antisymmetric >> i & 1) != 0});
+  for (int i = 0; i < 2 * dim; ++i)
+    planes.push_back({i / 2, i % 2 * 0.1 * (count - 1), (antisymmetric >> i & 1) != 0});
   return planes;
 }
 
@@ -39,9 +40,12 @@ TlsphOptions mirrored(PenaltyForm penalty, std::vector<Plane> planes) {
   return o;
 }
 
-Dimension dimension_of(int dim) { return dim == 3 ? Dimension::three_d : Dimension::plane_strain; }
+Dimension dimension_of(int dim) {
+  return dim == 3 ? Dimension::three_d : Dimension::plane_strain;
+}
 
-Column force(TotalLagrangianSph& model, const Column& u, const Column& v, const Executor& executor = one_thread) {
+Column force(TotalLagrangianSph& model, const Column& u, const Column& v,
+             const Executor& executor = one_thread) {
   Column f(u.size(), 1e30);
   model.forces(u, v, f, executor);
   return f;
@@ -49,11 +53,14 @@ Column force(TotalLagrangianSph& model, const Column& u, const Column& v, const 
 
 class Planes : public testing::TestWithParam<PenaltyForm> {};
 
-/// Every particle, those on planes with displacements that no condition holds, in every component.
+/// Every particle, those on planes with displacements that no condition holds, in every
+/// component.
 TEST_P(Planes, ForceIsMinusTheGradientOfTheEnergy) {
-  for (const auto& [dim, count, kinds] : {std::tuple{2, 5, 0b0110U}, {3, 4, 0b101010U}, {3, 4, 0b000111U}}) {
+  for (const auto& [dim, count, kinds] :
+       {std::tuple{2, 5, 0b0110U}, {3, 4, 0b101010U}, {3, 4, 0b000111U}}) {
     const Body body = box(dim, count);
-    TotalLagrangianSph model(body, rubber(dimension_of(dim)), mirrored(GetParam(), planes_of(dim, count, kinds)), one_thread);
+    TotalLagrangianSph model(body, rubber(dimension_of(dim)),
+                             mirrored(GetParam(), planes_of(dim, count, kinds)), one_thread);
     EXPECT_GT(model.points().images(), 0);
     if (!model.has_potential()) continue;  // (TLS.10): PartEqualsTheWhole
     const Column u = random_column(body, 0.005, 7), f = force(model, u, {});
@@ -63,19 +70,22 @@ TEST_P(Planes, ForceIsMinusTheGradientOfTheEnergy) {
       for (int i = 0; i < dim; ++i) {
         const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
         double difference = 0;
-        for (const auto& [step, weight] : {std::pair{2.0, -1.0}, {1.0, 8.0}, {-1.0, -8.0}, {-2.0, 1.0}}) {
+        for (const auto& [step, weight] :
+             {std::pair{2.0, -1.0}, {1.0, 8.0}, {-1.0, -8.0}, {-2.0, 1.0}}) {
           moved[k] = u[k] + step * d;
           const particle::Energies e = model.energies(moved, one_thread);
           difference += weight * (e.internal + e.stabilisation);
         }
         moved[k] = u[k];
-        EXPECT_NEAR(f[k], -difference / (12 * d), 1e-9 * scale) << "particle " << a << " component " << i;
+        EXPECT_NEAR(f[k], -difference / (12 * d), 1e-9 * scale)
+            << "particle " << a << " component " << i;
       }
     }
   }
 }
 
-/// u = H X with diagonal H fits symmetric planes through the origin; shear u_0 = g X_1 an antisymmetric plane X_1 = 0.
+/// u = H X with diagonal H fits symmetric planes through the origin; shear u_0 = g X_1 an
+/// antisymmetric plane X_1 = 0.
 TEST(PlanesGradient, IsExactForAffineFieldsThatFitThem) {
   for (const int dim : {2, 3}) {
     const Body body = box(dim, 6);
@@ -85,7 +95,8 @@ TEST(PlanesGradient, IsExactForAffineFieldsThatFitThem) {
     std::vector<Plane> symmetric, antisymmetric{{1, 0, true}};
     for (int i = 0; i < dim; ++i) symmetric.push_back({i, 0, false});
     for (const auto& [planes, H] : {std::pair{symmetric, stretch}, {antisymmetric, shear}}) {
-      TotalLagrangianSph model(body, rubber(dimension_of(dim)), mirrored(PenaltyForm::none, planes), one_thread);
+      TotalLagrangianSph model(body, rubber(dimension_of(dim)),
+                               mirrored(PenaltyForm::none, planes), one_thread);
       std::vector<Mat3> found(body.n);
       model.gradients(affine(body, H), found);
       for (const Mat3& G : found) EXPECT_LT((G - H).cwiseAbs().maxCoeff(), 2e-15);
@@ -93,8 +104,9 @@ TEST(PlanesGradient, IsExactForAffineFieldsThatFitThem) {
   }
 }
 
-/// One part of a body computed with symmetric planes, against the whole of it without: the body, its reflections in X_i = 0, with
-/// particles on the planes once and their volumes for all parts.
+/// One part of a body computed with symmetric planes, against the whole of it without: the
+/// body, its reflections in X_i = 0, with particles on the planes once and their volumes for
+/// all parts.
 TEST_P(Planes, PartEqualsTheWhole) {
   for (const auto& [dim, count] : {std::pair{2, 6}, {3, 4}}) {
     const Body part = box(dim, count);
@@ -115,7 +127,8 @@ TEST_P(Planes, PartEqualsTheWhole) {
     for (int mask = 0; mask < 1 << dim; ++mask) {
       for (Index a = 0; a < part.n; ++a) {
         bool again = false;
-        for (int i = 0; i < dim; ++i) again = again || ((mask >> i & 1) != 0 && part.X[a * part.stride + i] == 0);
+        for (int i = 0; i < dim; ++i)
+          again = again || ((mask >> i & 1) != 0 && part.X[a * part.stride + i] == 0);
         if (again) continue;
         if (mask == 0) first[a] = whole.n;
         for (int i = 0; i < part.stride; ++i) {
@@ -137,11 +150,13 @@ TEST_P(Planes, PartEqualsTheWhole) {
     for (Index a = 0; a < part.n; ++a) {
       Vec3 of_part = at(part, f, a);
       for (int i = 0; i < dim; ++i) {
-        if (part.X[a * part.stride + i] == 0) of_part[i] = 0;  // held by the condition; zero by symmetry in the whole
+        if (part.X[a * part.stride + i] == 0)
+          of_part[i] = 0;  // held by the condition; zero by symmetry in the whole
       }
       EXPECT_LT((parts[a] * of_part - at(whole, g, first[a])).norm(), 1e-13 * largest(g)) << a;
     }
-    const particle::Energies e = small.energies(u, one_thread), all = big.energies(whole_u, one_thread);
+    const particle::Energies e = small.energies(u, one_thread),
+                             all = big.energies(whole_u, one_thread);
     EXPECT_NEAR(std::pow(2, dim) * e.internal, all.internal, 1e-13 * all.internal);
     EXPECT_NEAR(std::pow(2, dim) * e.stabilisation, all.stabilisation, 1e-13 * all.internal);
   }
@@ -153,7 +168,8 @@ TEST(PlanesNear, ImagesOfImages) {
   TlsphOptions o = mirrored(PenaltyForm::none, {{0, 0, false}, {0, 0.2, false}});
   o.support = 4.5;
   TotalLagrangianSph model(body, rubber(Dimension::plane_strain), o, one_thread);
-  // Maps of X: -X, .4 - X, X +- .4; and of -.4 - X and .8 - X the layer next to the body, .4 from it where R = .45.
+  // Maps of X: -X, .4 - X, X +- .4; and of -.4 - X and .8 - X the layer next to the body, .4
+  // from it where R = .45.
   EXPECT_EQ(model.points().images(), 4 * body.n + 2 * 3);
 }
 
@@ -162,7 +178,8 @@ TEST_P(Planes, ThreadsGiveTheSameBits) {
   TlsphOptions o = mirrored(GetParam(), planes_of(3, 12, 0b101010U));
   o.alpha = 0.5;
   TotalLagrangianSph model(body, rubber(Dimension::three_d), o, one_thread);
-  const Column u = random_column(body, 0.004, 1), v = random_column(body, 10, 2), f = force(model, u, v);
+  const Column u = random_column(body, 0.004, 1), v = random_column(body, 10, 2),
+               f = force(model, u, v);
   for (const int threads : {2, 3}) {
     const Executor executor(threads);
     TotalLagrangianSph other(body, rubber(Dimension::three_d), o, executor);
@@ -171,23 +188,32 @@ TEST_P(Planes, ThreadsGiveTheSameBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Penalties, Planes,
-                         testing::Values(PenaltyForm::none, PenaltyForm::ganzenmueller, PenaltyForm::potential));
+                         testing::Values(PenaltyForm::none, PenaltyForm::ganzenmueller,
+                                         PenaltyForm::potential));
 
 /// The method's model of a scene.
-std::unique_ptr<particle::ForceModel> model_of(const scene::Problem& problem, const Body& body,
-                                               const std::map<std::string, std::string>& settings) {
-  const auto& method = dynamic_cast<const particle::ParticleMethod&>(scene::MethodRegistry::instance().find("tlsph"));
-  return method.make_model(body, problem, scene::Settings("tlsph", method.info().parameters, settings), one_thread);
+std::unique_ptr<particle::ForceModel>
+model_of(const scene::Problem& problem, const Body& body,
+         const std::map<std::string, std::string>& settings) {
+  const auto& method = dynamic_cast<const particle::ParticleMethod&>(
+      scene::MethodRegistry::instance().find("tlsph"));
+  return method.make_model(
+      body, problem, scene::Settings("tlsph", method.info().parameters, settings), one_thread);
 }
 
 TEST(PlanesSetting, TruncatedAndNoPlanesAllocateNothing) {
-  const scene::Problem cube = scene::read_problem("swinging_cube"), block = scene::read_problem("spinning_block");
-  const Body body = particle::make_body(cube, 0.25, 0.25, 1), free_body = particle::make_body(block, 0.25, 0.25, 1);
-  const auto points = [](const particle::ForceModel& m) { return dynamic_cast<const TotalLagrangianSph&>(m).points(); };
+  const scene::Problem cube = scene::read_problem("swinging_cube"),
+                       block = scene::read_problem("spinning_block");
+  const Body body = particle::make_body(cube, 0.25, 0.25, 1),
+             free_body = particle::make_body(block, 0.25, 0.25, 1);
+  const auto points = [](const particle::ForceModel& m) {
+    return dynamic_cast<const TotalLagrangianSph&>(m).points();
+  };
   const auto with = model_of(cube, body, {});
   EXPECT_GT(points(*with).images(), body.n);
   EXPECT_EQ(symmetry_planes(cube, body).size(), 6U);
-  for (const auto& model : {model_of(cube, body, {{"planes", "truncated"}}), model_of(block, free_body, {})}) {
+  for (const auto& model :
+       {model_of(cube, body, {{"planes", "truncated"}}), model_of(block, free_body, {})}) {
     EXPECT_EQ(points(*model).images(), 0);
     EXPECT_EQ(points(*model).positions(), model->body().X.data());
     EXPECT_TRUE(points(*model).make_column().empty());
@@ -213,10 +239,11 @@ TEST(PlanesSetting, APlaneThroughTheBodyIsAnInputError) {
   EXPECT_THROW(symmetry_planes(cube, body), InputError);
 }
 
-/// A lattice's mode of vibration is one of the method's too: f = -(1 + e) m w^2 u with one e for all free components, those on
-/// planes, edges and corners included, of second order in h.
+/// A lattice's mode of vibration is one of the method's too: f = -(1 + e) m w^2 u with one e
+/// for all free components, those on planes, edges and corners included, of second order in h.
 TEST(PlanesLattice, TheExactModeIsAModeOfSecondOrder) {
-  const scene::Problem cube = scene::read_problem("swinging_cube", {{"parameters.U", "1e-9 m"}});
+  const scene::Problem cube =
+      scene::read_problem("swinging_cube", {{"parameters.U", "1e-9 m"}});
   std::vector<double> errors;
   for (const int N : {6, 12}) {
     const Body body = particle::make_body(cube, 1.0 / N, 0, 1);
@@ -228,10 +255,12 @@ TEST(PlanesLattice, TheExactModeIsAModeOfSecondOrder) {
     }
     model->forces(u, {}, f, one_thread);
     const std::vector<double> V = voronoi_volumes(body);
-    const double w = std::sqrt(3.0) * M_PI / 2 * cube.material.shear_wave_speed(), rho = cube.material.rho0;
+    const double w = std::sqrt(3.0) * M_PI / 2 * cube.material.shear_wave_speed(),
+                 rho = cube.material.rho0;
     double lowest = 1e9, highest = -1e9;
     for (std::size_t k = 0; k < u.size(); ++k) {
-      const double expected = -rho * V[k / 4] * w * w * u[k], size = rho * V[k / 4] * w * w * 1e-9;
+      const double expected = -rho * V[k / 4] * w * w * u[k],
+                   size = rho * V[k / 4] * w * w * 1e-9;
       if (std::abs(u[k]) < 1e-11) continue;  // held by a condition, or a node of the mode
       lowest = std::min(lowest, (f[k] - expected) / expected);
       highest = std::max(highest, (f[k] - expected) / expected);
@@ -249,7 +278,8 @@ TEST(Volumes, OfALatticeAreThoseOfItsBoxes) {
   const std::vector<double> V = voronoi_volumes(body);
   for (Index a = 0; a < body.n; ++a) {
     double expected = 0.2 * 0.2 * 0.2;
-    for (int i = 0; i < 3; ++i) expected *= body.position(a)[i] == 0 || body.position(a)[i] == 1 ? 0.5 : 1;
+    for (int i = 0; i < 3; ++i)
+      expected *= body.position(a)[i] == 0 || body.position(a)[i] == 1 ? 0.5 : 1;
     EXPECT_NEAR(V[a], expected, 1e-15);
   }
 }
@@ -265,7 +295,8 @@ TEST(Volumes, AreThoseOfTheNearestPoints) {
     const Vec3 X = Vec3(k % fine + 0.5, k / fine % fine + 0.5, k / fine / fine + 0.5) / fine;
     Index nearest = 0;
     for (Index a = 1; a < body.n; ++a) {
-      if ((body.position(a) - X).squaredNorm() < (body.position(nearest) - X).squaredNorm()) nearest = a;
+      if ((body.position(a) - X).squaredNorm() < (body.position(nearest) - X).squaredNorm())
+        nearest = a;
     }
     counted[nearest] += 1.0 / (fine * fine * fine);
   }
