@@ -37,7 +37,9 @@ scene::MethodInfo tlsph_info() {
                   "1/2 k |u_loc|^2 a pair (TLS.11)"),
            choice("planes", "mirror", {"mirror", "truncated"},
                   "mirror: images of particles continue the body behind symmetric and antisymmetric planes, (TLS.14) "
-                  "to (TLS.17); truncated: none. Static scenes are always truncated: the tangent knows no images"),
+                  "to (TLS.16); truncated: none. Static scenes are always truncated: the tangent knows no images"),
+           choice("volumes", "voronoi", {"voronoi", "triangulation"},
+                  "V_a and the masses: of the Voronoi cells (TLS.17), equal on a lattice, or shares of the Delaunay simplices"),
            number("alpha", "0", 0, 1e6, ">= 0", "linear coefficient of Monaghan's artificial viscosity (TLS.12)"),
            number("beta", "0", 0, 1e6, ">= 0", "quadratic coefficient of Monaghan's artificial viscosity (TLS.12)")},
           {{"equilibrium patch test",
@@ -49,6 +51,12 @@ scene::MethodInfo tlsph_info() {
 class TlsphMethod final : public particle::ParticleMethod {
  public:
   TlsphMethod() : ParticleMethod(tlsph_info()) {}
+
+  void divide(Body& body, const scene::Problem& problem, const scene::Settings& settings) const override {
+    if (settings.word("volumes") != "voronoi") return;
+    body.V = voronoi_volumes(body);  // (TLS.17)
+    for (Index a = 0; a < body.n; ++a) body.m[a] = problem.material.rho0 * body.V[a];
+  }
 
   std::unique_ptr<particle::ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                                    const scene::Settings& settings,
@@ -62,7 +70,6 @@ class TlsphMethod final : public particle::ParticleMethod {
     options.alpha = settings.number("alpha");
     options.beta = settings.number("beta");
     if (settings.word("planes") == "mirror" && !problem.is_static) options.planes = symmetry_planes(problem, body);
-    if (!options.planes.empty()) options.V = volumes_at_planes(body, options.planes);  // (TLS.17)
     return std::make_unique<TotalLagrangianSph>(body, problem, options, executor);
   }
 };

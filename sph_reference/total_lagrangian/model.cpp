@@ -30,9 +30,8 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
       m_material(particle::kernel_material(problem)),
       m_rho0(problem.material.rho0),
       m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
-      m_V(options.V.empty() ? body.V : options.V),
       m_points(body, options.planes, m_kernel.radius()),
-      m_rows(find_neighbours(m_points, m_V, m_kernel, options.psi * problem.material.E, executor)),
+      m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E, executor)),
       m_loops(choose_loops(body.dim, m_material.law, penalty(), viscous())),
       m_records(static_cast<std::size_t>(m_points.count()) * 2 * body.dim * body.stride, 0.0),
       m_u(m_points.make_column()),
@@ -42,7 +41,7 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
 State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v, std::span<double> f,
                                 const Executor& executor) {
   const double* all_v = viscous() && !v.empty() ? m_points.extend(v, m_v, executor) : v.data();
-  return {m_points.positions(), m_points.extend(u, m_u, executor), all_v, m_V.data(), m_records.data(), f.data()};
+  return {m_points.positions(), m_points.extend(u, m_u, executor), all_v, m_body.V.data(), m_records.data(), f.data()};
 }
 
 void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
@@ -101,7 +100,7 @@ particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const
   e.internal = executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-      sum += m_V[a] * m_law.energy(plane_gradient(a));
+      sum += m_body.V[a] * m_law.energy(plane_gradient(a));
     }
     return sum;
   });
@@ -116,7 +115,7 @@ double TotalLagrangianSph::penalty_energy(const double* u, const Executor& execu
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
       for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
-        sum += 0.25 * m_V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
+        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
       }
     }
     return sum;

@@ -17,7 +17,6 @@ struct TlsphOptions {
   double alpha = 0;   ///< linear viscosity; 0: none
   double beta = 0;    ///< quadratic viscosity
   std::vector<Plane> planes{};  ///< with mirror particles behind them
-  std::vector<double> V{};      ///< volumes of the particles [m^3]; empty: the body's
 };
 
 class TotalLagrangianSph final : public particle::ForceModel {
@@ -55,7 +54,6 @@ class TotalLagrangianSph final : public particle::ForceModel {
   particle::KernelMaterial m_material;
   double m_rho0;
   Viscosity m_viscosity;
-  std::vector<double> m_V;  ///< volumes, with thickness [m^3]
   Points m_points;
   Neighbours m_rows;
   Loops m_loops;

@@ -51,7 +51,7 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
   update_gradients(state(u, {}, {}, one_thread), one_thread);
   std::vector<particle::Moduli> moduli(m_body.n);
   for (Index a = 0; a < m_body.n; ++a) {
-    moduli[a] = m_V[a] / m_body.V[a] * m_law.tangent(plane_gradient(a));  // the assembly multiplies by the body's
+    moduli[a] = m_law.tangent(plane_gradient(a));
   }
 
   std::vector<particle::PairTangent> pairs;
@@ -61,7 +61,7 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
     for (std::size_t i = m_rows.begin[a]; i < m_rows.begin[a + 1]; ++i) {
       const Index b = m_rows.other[i];
       if (b < a) continue;
-      const double k = m_V[a] * m_rows.stiffness[i];
+      const double k = m_body.V[a] * m_rows.stiffness[i];
       const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(u.data(), a, b);
       const Vec3 x_ab = l + X_ab + 0.5 * (plane_gradient(a) + plane_gradient(b)) * X_ab;
       particle::PairTangent pair = penalty() == PenaltyForm::potential ? potential_pair(k)

@@ -85,15 +85,4 @@ std::vector<double> voronoi_volumes(const Body& body) {
   return V;
 }
 
-std::vector<double> volumes_at_planes(const Body& body, const std::vector<Plane>& planes) {
-  std::vector<double> V = voronoi_volumes(body);
-  for (Index a = 0; a < body.n; ++a) {
-    int meeting = 0;
-    for (const Plane& plane : planes)
-      meeting += body.position(a)[plane.axis] == plane.coordinate ? 1 : 0;
-    if (meeting < 2) V[a] = body.V[a];
-  }
-  return V;
-}
-
 }  // namespace concord::sph

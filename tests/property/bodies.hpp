@@ -51,14 +51,24 @@ struct Bench {
         const std::vector<scene::Override>& set = {}, double perturb = 0.25,
         std::uint64_t seed = 5)
       : problem(scene::read_problem(scene, set)),
-        body(make_body(problem, problem.reference_length / resolution, perturb, seed)),
+        body(divided(variant, problem,
+                     make_body(problem, problem.reference_length / resolution, perturb, seed))),
         model(make(variant)) {}
 
-  std::unique_ptr<ForceModel> make(const Variant& variant) const {
-    const auto& method = dynamic_cast<const ParticleMethod&>(
+  static const ParticleMethod& method_of(const Variant& variant) {
+    return dynamic_cast<const ParticleMethod&>(
         scene::MethodRegistry::instance().find(variant.method));
-    const scene::Settings settings(variant.method, method.info().parameters, variant.settings);
-    return method.make_model(body, problem, settings, executor);
+  }
+  static scene::Settings settings_of(const Variant& variant) {
+    return {variant.method, method_of(variant).info().parameters, variant.settings};
+  }
+  /// With the volumes that the method wants.
+  static Body divided(const Variant& variant, const scene::Problem& problem, Body body) {
+    method_of(variant).divide(body, problem, settings_of(variant));
+    return body;
+  }
+  std::unique_ptr<ForceModel> make(const Variant& variant) const {
+    return method_of(variant).make_model(body, problem, settings_of(variant), executor);
   }
 
   Column zeros() const { return Column(body.X.size(), 0.0); }

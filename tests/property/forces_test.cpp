@@ -169,14 +169,11 @@ TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
   const Column u = b.random_displacement();
   const Column f = b.force(u);
   const double scale = norm(f);
-  Bench other(GetParam(), "spinning_block", 5);
-  const Body renumbered = make_body(b.problem, shuffled);
+  const Body renumbered = Bench::divided(GetParam(), b.problem, make_body(b.problem, shuffled));
   for (Index a = 0; a < b.body.n; ++a) ASSERT_EQ(renumbered.position(a), b.body.position(a));
-  const auto& method = dynamic_cast<const ParticleMethod&>(
-      scene::MethodRegistry::instance().find(GetParam().method));
-  const scene::Settings settings(GetParam().method, method.info().parameters,
-                                 GetParam().settings);
-  const auto model = method.make_model(renumbered, b.problem, settings, b.executor);
+  const auto model = Bench::method_of(GetParam())
+                         .make_model(renumbered, b.problem, Bench::settings_of(GetParam()),
+                                     b.executor);
   Column g = b.zeros();
   model->forces(u, b.zeros(), g, b.executor);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= f[k];
