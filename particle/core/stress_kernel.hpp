@@ -201,7 +201,8 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
       double m02 = c.mu * (h02 + h20 + h00 * h02 + h10 * h12 + h20 * h22);
       double m12 = c.mu * (h12 + h21 + h01 * h02 + h11 * h12 + h21 * h22);
       if constexpr (is_isochoric<Law>) {
-        m00 *= power[l], m11 *= power[l], m22 *= power[l], m01 *= power[l], m02 *= power[l], m12 *= power[l];
+        m00 *= power[l], m11 *= power[l], m22 *= power[l], m01 *= power[l], m02 *= power[l],
+            m12 *= power[l];
       }
       const double f00 = 1 + h00, f11 = 1 + h11, f22 = 1 + h22;
       double a00, a10, a20, a01, a11, a21, a02, a12, a22, scale;
@@ -214,7 +215,8 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
       } else {
         double volumetric;
         if constexpr (is_isochoric<Law>)
-          volumetric = (0.5 * c.lambda + c.mu / 3) * (j[l] * (2 + j[l])) - (m00 + m11 + m22) / 3;
+          volumetric =
+              (0.5 * c.lambda + c.mu / 3) * (j[l] * (2 + j[l])) - (m00 + m11 + m22) / 3;
         else
           volumetric = c.lambda * log_j[l];
         m00 += volumetric, m11 += volumetric, m22 += volumetric;

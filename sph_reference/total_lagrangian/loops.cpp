@@ -1,5 +1,6 @@
-// The loops of rows.inc, compiled for each instruction set. target_clones will not do: g++ 12 lowers vector expressions to the
-// baseline before it clones, which makes stores and shuffles of every broadcast.
+// The loops of rows.inc, compiled for each instruction set. target_clones will not do: g++ 12
+// lowers vector expressions to the baseline before it clones, which makes stores and shuffles
+// of every broadcast.
 
 #include "sph_reference/total_lagrangian/loops.hpp"
 
@@ -22,7 +23,8 @@ namespace baseline {
 }
 #undef SPH_TARGET
 
-#if !defined(CONCORD_NO_CLONES) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#if !defined(CONCORD_NO_CLONES) && defined(__x86_64__) && defined(__GNUC__) &&                 \
+    !defined(__clang__)
 #define SPH_WIDE 1
 #define SPH_TARGET __attribute__((target("arch=x86-64-v3")))
 namespace avx2 {

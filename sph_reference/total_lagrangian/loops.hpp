@@ -1,5 +1,6 @@
 #pragma once
-// The loops of one force evaluation, as functions chosen once for a dimension, a stress law and what is switched on.
+// The loops of one force evaluation, as functions chosen once for a dimension, a stress law and
+// what is switched on.
 
 #include "particle/core/stress_kernel.hpp"
 #include "sph_reference/total_lagrangian/neighbours.hpp"
@@ -9,8 +10,8 @@ namespace concord::sph {
 using particle::LameConstants;
 using particle::StressLaw;
 
-/// What the loops read and write. Vectors are columns of `stride` doubles a particle. A record holds, for each column k of its
-/// particle's tensors, [T_k | H_k], a cache line in 3D.
+/// What the loops read and write. Vectors are columns of `stride` doubles a particle. A record
+/// holds, for each column k of its particle's tensors, [T_k | H_k], a cache line in 3D.
 struct State {
   const double *X, *u, *v;  ///< v: read with viscosity only
   const double* V;          ///< volumes, with thickness [m^3]
@@ -27,11 +28,13 @@ struct Viscosity {
 
 enum class PenaltyForm {
   none,
-  ganzenmueller,  ///< (28) of the Continuum Bond Method paper: along the current bond, no potential (TLS.10)
+  ganzenmueller,  ///< (28) of the Continuum Bond Method paper: along the current bond, no
+                  ///< potential (TLS.10)
   potential       ///< 1/2 k_ab |l_ab|^2 a pair, with all its derivatives (TLS.11)
 };
 
-/// Instruction sets that the loops are compiled for. One neighbour's vectors fill AVX2's registers; AVX-512 was not faster.
+/// Instruction sets that the loops are compiled for. One neighbour's vectors fill AVX2's
+/// registers; AVX-512 was not faster.
 enum class Isa { baseline, avx2 };
 /// The widest one that this machine runs.
 Isa best_isa();
@@ -39,15 +42,20 @@ Isa best_isa();
 /// Each function works on particles [first, last) and writes to these alone.
 struct Loops {
   /// H_a (TLS.5) into the records.
-  void (*gradients)(const Neighbours& rows, std::size_t first, std::size_t last, const State& s);
-  /// H_a, P_a and T_a = P_a K_a^-1 (TLS.6), in groups of stress_width from `first`. With a potential penalty H_a of all particles
-  /// must be in the records; Q_a/V_a is added to P_a, and f_a set to the penalty's direct force (TLS.11). Returns the
-  /// first particle with det F <= 0 or NaN, or -1.
-  Index (*stresses)(const Neighbours& rows, std::size_t first, std::size_t last, const LameConstants& c, const State& s);
+  void (*gradients)(const Neighbours& rows, std::size_t first, std::size_t last,
+                    const State& s);
+  /// H_a, P_a and T_a = P_a K_a^-1 (TLS.6), in groups of stress_width from `first`. With a
+  /// potential penalty H_a of all particles must be in the records; Q_a/V_a is added to P_a,
+  /// and f_a set to the penalty's direct force (TLS.11). Returns the first particle with det F
+  /// <= 0 or NaN, or -1.
+  Index (*stresses)(const Neighbours& rows, std::size_t first, std::size_t last,
+                    const LameConstants& c, const State& s);
   /// f_a (TLS.7) from the records of all particles.
-  void (*forces)(const Neighbours& rows, std::size_t first, std::size_t last, const Viscosity& eta, const State& s);
+  void (*forces)(const Neighbours& rows, std::size_t first, std::size_t last,
+                 const Viscosity& eta, const State& s);
 };
 
-Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous, Isa isa = best_isa());
+Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous,
+                   Isa isa = best_isa());
 
 }  // namespace concord::sph

@@ -5,7 +5,8 @@
 namespace concord::sph {
 namespace {
 
-/// Particles in a range dealt to a thread: whole groups of stress_width, several ranges a thread from a few thousand particles on.
+/// Particles in a range dealt to a thread: whole groups of stress_width, several ranges a
+/// thread from a few thousand particles on.
 constexpr std::size_t range = 64 * particle::stress_width;
 
 template <class Loop>
@@ -15,37 +16,40 @@ void for_ranges(std::size_t n, const Executor& executor, const Loop& loop) {
 }
 
 Viscosity viscosity(const TlsphOptions& options, const scene::Material& material, double h) {
-  return {options.alpha * material.rho0 * material.longitudinal_wave_speed() * h, options.beta * material.rho0 * h * h,
-          0.01 * h * h};
+  return {options.alpha * material.rho0 * material.longitudinal_wave_speed() * h,
+          options.beta * material.rho0 * h * h, 0.01 * h * h};
 }
 
 }  // namespace
 
-TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& problem, const TlsphOptions& options,
-                                       const Executor& executor)
-    : ForceModel(body),
-      m_options(options),
+TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& problem,
+                                       const TlsphOptions& options, const Executor& executor)
+    : ForceModel(body), m_options(options),
       m_kernel(options.kernel, body.dim, options.support * body.h),
       m_law(problem.material, problem.dimension),
-      m_material(particle::kernel_material(problem)),
-      m_rho0(problem.material.rho0),
+      m_material(particle::kernel_material(problem)), m_rho0(problem.material.rho0),
       m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
       m_points(body, options.planes, m_kernel.radius()),
-      m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E, executor)),
+      m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E,
+                             executor)),
       m_loops(choose_loops(body.dim, m_material.law, penalty(), viscous())),
       m_records(static_cast<std::size_t>(m_points.count()) * 2 * body.dim * body.stride, 0.0),
-      m_u(m_points.make_column()),
-      m_v(viscous() ? m_points.make_column() : Column()),
+      m_u(m_points.make_column()), m_v(viscous() ? m_points.make_column() : Column()),
       m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
 
-State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v, std::span<double> f,
-                                const Executor& executor) {
+State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v,
+                                std::span<double> f, const Executor& executor) {
   const double* all_v = viscous() && !v.empty() ? m_points.extend(v, m_v, executor) : v.data();
-  return {m_points.positions(), m_points.extend(u, m_u, executor), all_v, m_body.V.data(), m_records.data(), f.data()};
+  return {m_points.positions(),
+          m_points.extend(u, m_u, executor),
+          all_v,
+          m_body.V.data(),
+          m_records.data(),
+          f.data()};
 }
 
-void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
-                                const Executor& executor) {
+void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v,
+                                std::span<double> f, const Executor& executor) {
   const State s = state(u, v, f, executor);
   if (penalty() == PenaltyForm::potential) update_gradients(s, executor);
   for_ranges(m_body.n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
@@ -88,12 +92,15 @@ void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H)
 Vec3 TotalLagrangianSph::local_displacement(const double* u, Index a, Index b) const {
   Vec3 u_ab = Vec3::Zero();
   for (int i = 0; i < m_body.dim; ++i) {
-    u_ab[i] = u[static_cast<std::size_t>(b) * m_body.stride + i] - u[static_cast<std::size_t>(a) * m_body.stride + i];
+    u_ab[i] = u[static_cast<std::size_t>(b) * m_body.stride + i] -
+              u[static_cast<std::size_t>(a) * m_body.stride + i];
   }
-  return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) * (m_points.position(b) - m_points.position(a));
+  return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) *
+                    (m_points.position(b) - m_points.position(a));
 }
 
-particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const Executor& executor) {
+particle::Energies TotalLagrangianSph::energies(std::span<const double> u,
+                                                const Executor& executor) {
   const State s = state(u, {}, {}, executor);
   update_gradients(s, executor);
   particle::Energies e;
@@ -108,14 +115,16 @@ particle::Energies TotalLagrangianSph::energies(std::span<const double> u, const
   return e;
 }
 
-/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two rows, as do a pair with an image and
-/// its reflection. A particle and its own image stand in one: theirs is half a pair (TLS.16).
+/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two
+/// rows, as do a pair with an image and its reflection. A particle and its own image stand in
+/// one: theirs is half a pair (TLS.16).
 double TotalLagrangianSph::penalty_energy(const double* u, const Executor& executor) const {
   return executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
       for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
-        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] * local_displacement(u, a, m_rows.other[k]).squaredNorm();
+        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] *
+               local_displacement(u, a, m_rows.other[k]).squaredNorm();
       }
     }
     return sum;

@@ -1,6 +1,6 @@
 #pragma once
-// Total-Lagrangian SPH with corrected gradients, after Ganzenmueller (2015) and Eqs. (27), (28) of the Continuum Bond Method
-// paper; equations (TLS.n) in README.md of this folder.
+// Total-Lagrangian SPH with corrected gradients, after Ganzenmueller (2015) and Eqs. (27), (28)
+// of the Continuum Bond Method paper; equations (TLS.n) in README.md of this folder.
 
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
@@ -13,18 +13,21 @@ struct TlsphOptions {
   KernelShape kernel = KernelShape::cubic_spline;
   double support = 3;  ///< R / h
   PenaltyForm penalty = PenaltyForm::ganzenmueller;
-  double psi = 0.07;  ///< penalty factor; 0: no penalty, and no cost
-  double alpha = 0;   ///< linear viscosity; 0: none
-  double beta = 0;    ///< quadratic viscosity
+  double psi = 0.07;            ///< penalty factor; 0: no penalty, and no cost
+  double alpha = 0;             ///< linear viscosity; 0: none
+  double beta = 0;              ///< quadratic viscosity
   std::vector<Plane> planes{};  ///< with mirror particles behind them
 };
 
 class TotalLagrangianSph final : public particle::ForceModel {
  public:
-  /// Throws InputError (key tlsph.support) where the neighbours of a particle do not span the space.
-  TotalLagrangianSph(const Body& body, const scene::Problem& problem, const TlsphOptions& options, const Executor& executor);
+  /// Throws InputError (key tlsph.support) where the neighbours of a particle do not span the
+  /// space.
+  TotalLagrangianSph(const Body& body, const scene::Problem& problem,
+                     const TlsphOptions& options, const Executor& executor);
 
-  void forces(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor) override;
+  void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
+              const Executor& executor) override;
   particle::Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
@@ -39,10 +42,13 @@ class TotalLagrangianSph final : public particle::ForceModel {
   const Points& points() const { return m_points; }
 
  private:
-  PenaltyForm penalty() const { return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none; }
+  PenaltyForm penalty() const {
+    return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none;
+  }
   Mat3 plane_gradient(Index a) const;
   /// State at u and v, continued to the images.
-  State state(std::span<const double> u, std::span<const double> v, std::span<double> f, const Executor& executor);
+  State state(std::span<const double> u, std::span<const double> v, std::span<double> f,
+              const Executor& executor);
   /// H_a of all points into the records.
   void update_gradients(const State& s, const Executor& executor);
   Vec3 local_displacement(const double* u, Index a, Index b) const;

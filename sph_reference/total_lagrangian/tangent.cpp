@@ -1,4 +1,5 @@
-// Tangent stiffness of total-Lagrangian SPH: gradient rows, moduli and linearised penalties for particle/core's assembly.
+// Tangent stiffness of total-Lagrangian SPH: gradient rows, moduli and linearised penalties for
+// particle/core's assembly.
 
 #include "particle/core/tangent.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
@@ -15,7 +16,8 @@ particle::GradientRows gradient_rows(const Body& body, const Neighbours& rows) {
   g.neighbour = rows.other;
   g.g.resize(rows.count());
   for (Index a = 0; a < body.n; ++a) {
-    const double* K = &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
+    const double* K =
+        &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
     Mat3 inverse = Mat3::Zero();
     for (int j = 0; j < body.dim; ++j) {
       for (int i = 0; i < body.dim; ++i) inverse(i, j) = K[j * body.stride + i];
@@ -62,10 +64,12 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
       const Index b = m_rows.other[i];
       if (b < a) continue;
       const double k = m_body.V[a] * m_rows.stiffness[i];
-      const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(u.data(), a, b);
+      const Vec3 X_ab = m_body.position(b) - m_body.position(a),
+                 l = local_displacement(u.data(), a, b);
       const Vec3 x_ab = l + X_ab + 0.5 * (plane_gradient(a) + plane_gradient(b)) * X_ab;
-      particle::PairTangent pair = penalty() == PenaltyForm::potential ? potential_pair(k)
-                                                                               : ganzenmueller_pair(k, l, x_ab);
+      particle::PairTangent pair = penalty() == PenaltyForm::potential
+                                       ? potential_pair(k)
+                                       : ganzenmueller_pair(k, l, x_ab);
       pair.a = a, pair.b = b, pair.X_ab = X_ab;
       pairs.push_back(pair);
     }

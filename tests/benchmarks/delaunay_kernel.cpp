@@ -1,4 +1,5 @@
-// One force evaluation and update of the Delaunay method, with and without contact, beside a STREAM triad of the same run.
+// One force evaluation and update of the Delaunay method, with and without contact, beside a
+// STREAM triad of the same run.
 
 #include "particle/core/elastic.hpp"
 #include "particle/delaunay/delaunay.hpp"
@@ -33,7 +34,8 @@ void triad(benchmark::State& state) {
     benchmark::DoNotOptimize(a.data());
     benchmark::ClobberMemory();
   }
-  state.counters["GB_s"] = benchmark::Counter(3.0 * n * sizeof(double) * state.iterations() / 1e9, benchmark::Counter::kIsRate);
+  state.counters["GB_s"] = benchmark::Counter(
+      3.0 * n * sizeof(double) * state.iterations() / 1e9, benchmark::Counter::kIsRate);
 }
 BENCHMARK(triad)->Name("triad")->Unit(benchmark::kMillisecond);
 
@@ -63,9 +65,9 @@ void delaunay_step(benchmark::State& state) {
     benchmark::DoNotOptimize(u.data());
   }
   state.counters["particles"] = body.n;
-  state.counters["per_particle"] = benchmark::Counter(
-      static_cast<double>(body.n) * static_cast<double>(state.iterations()),
-      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["per_particle"] =
+      benchmark::Counter(static_cast<double>(body.n) * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   state.counters["bonds_per_particle"] = static_cast<double>(model.interactions()) / body.n;
 }
 BENCHMARK(delaunay_step)

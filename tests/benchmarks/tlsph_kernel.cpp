@@ -1,4 +1,5 @@
-// One force evaluation of total-Lagrangian SPH: time a particle and a directed neighbour, one thread.
+// One force evaluation of total-Lagrangian SPH: time a particle and a directed neighbour, one
+// thread.
 
 #include "sph_reference/total_lagrangian/model.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 
 using namespace concord;
 
-/// A cube of count^3 particles on a lattice of spacing h in sweep order, without triangulation: SPH needs volumes alone.
+/// A cube of count^3 particles on a lattice of spacing h in sweep order, without triangulation:
+/// SPH needs volumes alone.
 particle::Body lattice(int count) {
   particle::Body body;
   body.n = count * count * count;
@@ -22,7 +24,8 @@ particle::Body lattice(int count) {
       for (int i = 0; i < count; ++i) {
         const double weight[2] = {1.0, 0.5};
         const auto on_face = [&](int c) { return c == 0 || c == count - 1; };
-        body.V.push_back(std::pow(body.h, 3) * weight[on_face(i)] * weight[on_face(j)] * weight[on_face(k)]);
+        body.V.push_back(std::pow(body.h, 3) * weight[on_face(i)] * weight[on_face(j)] *
+                         weight[on_face(k)]);
         for (const double x : {i * body.h, j * body.h, k * body.h, 0.0}) body.X.push_back(x);
       }
     }
@@ -40,7 +43,8 @@ scene::Problem rubber() {
 
 void tlsph_step(benchmark::State& state, const sph::TlsphOptions& options) {
   const particle::Executor executor(1);
-  const particle::Body body = lattice(static_cast<int>(std::lround(std::cbrt(static_cast<double>(state.range(0))))));
+  const particle::Body body =
+      lattice(static_cast<int>(std::lround(std::cbrt(static_cast<double>(state.range(0))))));
   sph::TotalLagrangianSph model(body, rubber(), options, executor);
   particle::Column u(body.X.size()), v(body.X.size()), f(body.X.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -72,9 +76,11 @@ void sizes(benchmark::internal::Benchmark* b) {
 }
 
 using sph::PenaltyForm;
-BENCHMARK_CAPTURE(tlsph_step, ganzenmuller, with(0.07, PenaltyForm::ganzenmueller, 0))->Apply(sizes);
+BENCHMARK_CAPTURE(tlsph_step, ganzenmuller, with(0.07, PenaltyForm::ganzenmueller, 0))
+    ->Apply(sizes);
 BENCHMARK_CAPTURE(tlsph_step, no_penalty, with(0, PenaltyForm::ganzenmueller, 0))->Apply(sizes);
 BENCHMARK_CAPTURE(tlsph_step, potential, with(0.07, PenaltyForm::potential, 0))->Apply(sizes);
-BENCHMARK_CAPTURE(tlsph_step, ganzenmuller_viscous, with(0.07, PenaltyForm::ganzenmueller, 1))->Apply(sizes);
+BENCHMARK_CAPTURE(tlsph_step, ganzenmuller_viscous, with(0.07, PenaltyForm::ganzenmueller, 1))
+    ->Apply(sizes);
 
 }  // namespace

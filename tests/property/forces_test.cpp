@@ -171,9 +171,9 @@ TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
   const double scale = norm(f);
   const Body renumbered = Bench::divided(GetParam(), b.problem, make_body(b.problem, shuffled));
   for (Index a = 0; a < b.body.n; ++a) ASSERT_EQ(renumbered.position(a), b.body.position(a));
-  const auto model = Bench::method_of(GetParam())
-                         .make_model(renumbered, b.problem, Bench::settings_of(GetParam()),
-                                     b.executor);
+  const auto model =
+      Bench::method_of(GetParam())
+          .make_model(renumbered, b.problem, Bench::settings_of(GetParam()), b.executor);
   Column g = b.zeros();
   model->forces(u, b.zeros(), g, b.executor);
   for (std::size_t k = 0; k < g.size(); ++k) g[k] -= f[k];

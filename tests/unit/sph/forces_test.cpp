@@ -1,4 +1,5 @@
-// Properties of the forces: exact gradients of affine fields, derivatives of the potential, both momenta, tangent, rotation.
+// Properties of the forces: exact gradients of affine fields, derivatives of the potential,
+// both momenta, tangent, rotation.
 
 #include "sample.hpp"
 
@@ -17,7 +18,9 @@ struct Case {
 
 const Executor one_thread(1);
 
-Body body_of(const Case& c) { return space_dim(c.dimension) == 3 ? lattice(3, 5, 0.25) : lattice(2, 8, 0.25); }
+Body body_of(const Case& c) {
+  return space_dim(c.dimension) == 3 ? lattice(3, 5, 0.25) : lattice(2, 8, 0.25);
+}
 TlsphOptions options_of(const Case& c) {
   TlsphOptions o = options(c.psi, c.penalty);
   o.kernel = c.kernel;
@@ -27,7 +30,8 @@ TlsphOptions options_of(const Case& c) {
 class Forces : public testing::TestWithParam<Case> {
  protected:
   Body body = body_of(GetParam());
-  TotalLagrangianSph model{body, rubber(GetParam().dimension, GetParam().model), options_of(GetParam()), one_thread};
+  TotalLagrangianSph model{body, rubber(GetParam().dimension, GetParam().model),
+                           options_of(GetParam()), one_thread};
   /// A rotation by half a radian with random strains of about 10 % on top.
   Column u = [this] {
     Column c = affine(body, rotation(body.dim, 0.5));
@@ -57,9 +61,11 @@ TEST_P(Forces, GradientsOfAffineFieldsAreExact) {
   for (const Mat3& G : found) {
     EXPECT_LT((G - H).topLeftCorner(body.dim, body.dim).cwiseAbs().maxCoeff(), 2e-15);
     if (GetParam().dimension == Dimension::plane_stress) {
-      EXPECT_LT(std::abs(scene::ElasticLaw(rubber(Dimension::three_d, GetParam().model).material, Dimension::three_d)
-                             .stress(G)(2, 2)),
-                1e-15 * 1e9);
+      EXPECT_LT(
+          std::abs(scene::ElasticLaw(rubber(Dimension::three_d, GetParam().model).material,
+                                     Dimension::three_d)
+                       .stress(G)(2, 2)),
+          1e-15 * 1e9);
     }
   }
 }
@@ -73,7 +79,8 @@ TEST_P(Forces, AreDerivativesOfThePotential) {
     for (int i = 0; i < body.dim; ++i) {
       const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
       double difference = 0;  // fourth order: (-W(2d) + 8 W(d) - 8 W(-d) + W(-2d)) / (12 d)
-      for (const auto& [step, weight] : {std::pair{2.0, -1.0}, {1.0, 8.0}, {-1.0, -8.0}, {-2.0, 1.0}}) {
+      for (const auto& [step, weight] :
+           {std::pair{2.0, -1.0}, {1.0, 8.0}, {-1.0, -8.0}, {-2.0, 1.0}}) {
         moved[k] = u[k] + step * d;
         difference += weight * energy(moved);
       }
@@ -117,7 +124,8 @@ TEST_P(Forces, TangentMatchesDifferences) {
       for (Index a = 0; a < body.n; ++a) {
         for (int i = 0; i < body.dim; ++i) {
           const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
-          EXPECT_NEAR(K(a * body.dim + i, b * body.dim + j), -(f_plus[k] - f_minus[k]) / (2 * d), 2e-8 * scale);
+          EXPECT_NEAR(K(a * body.dim + i, b * body.dim + j),
+                      -(f_plus[k] - f_minus[k]) / (2 * d), 2e-8 * scale);
         }
       }
     }
@@ -135,16 +143,17 @@ using enum scene::MaterialModel;
 constexpr KernelShape cubic = KernelShape::cubic_spline, wendland = KernelShape::wendland_c2;
 INSTANTIATE_TEST_SUITE_P(
     Options, Forces,
-    testing::Values(Case{three_d, neo_hookean, cubic, PenaltyForm::none, 0},
-                    Case{three_d, st_venant_kirchhoff, wendland, PenaltyForm::potential, 0.3},
-                    Case{three_d, neo_hookean, cubic, PenaltyForm::ganzenmueller, 0.3},
-                    Case{plane_strain, neo_hookean, wendland, PenaltyForm::none, 0},
-                    Case{plane_strain, neo_hookean, cubic, PenaltyForm::ganzenmueller, 0.07},
-                    Case{plane_stress, neo_hookean, cubic, PenaltyForm::potential, 0.3},
-                    Case{three_d, neo_hookean_isochoric, wendland, PenaltyForm::potential, 0.3},
-                    Case{plane_strain, neo_hookean_isochoric, cubic, PenaltyForm::ganzenmueller, 0.07},
-                    Case{plane_stress, neo_hookean_isochoric, cubic, PenaltyForm::potential, 0.3},
-                    Case{plane_stress, st_venant_kirchhoff, cubic, PenaltyForm::ganzenmueller, 1}));
+    testing::Values(
+        Case{three_d, neo_hookean, cubic, PenaltyForm::none, 0},
+        Case{three_d, st_venant_kirchhoff, wendland, PenaltyForm::potential, 0.3},
+        Case{three_d, neo_hookean, cubic, PenaltyForm::ganzenmueller, 0.3},
+        Case{plane_strain, neo_hookean, wendland, PenaltyForm::none, 0},
+        Case{plane_strain, neo_hookean, cubic, PenaltyForm::ganzenmueller, 0.07},
+        Case{plane_stress, neo_hookean, cubic, PenaltyForm::potential, 0.3},
+        Case{three_d, neo_hookean_isochoric, wendland, PenaltyForm::potential, 0.3},
+        Case{plane_strain, neo_hookean_isochoric, cubic, PenaltyForm::ganzenmueller, 0.07},
+        Case{plane_stress, neo_hookean_isochoric, cubic, PenaltyForm::potential, 0.3},
+        Case{plane_stress, st_venant_kirchhoff, cubic, PenaltyForm::ganzenmueller, 1}));
 
 }  // namespace
 }  // namespace concord::sph

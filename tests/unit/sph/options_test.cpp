@@ -1,4 +1,5 @@
-// What settings do: threads and instruction sets, psi = 0, viscosity, errors, neighbours, registration.
+// What settings do: threads and instruction sets, psi = 0, viscosity, errors, neighbours,
+// registration.
 
 #include "sample.hpp"
 
@@ -12,7 +13,8 @@ namespace {
 
 const Executor one_thread(1);
 
-Column forces(TotalLagrangianSph& model, const Column& u, const Column& v, const Executor& executor = one_thread) {
+Column forces(TotalLagrangianSph& model, const Column& u, const Column& v,
+              const Executor& executor = one_thread) {
   Column f(u.size(), 1e30);
   model.forces(u, v, f, executor);
   return f;
@@ -26,9 +28,11 @@ TEST(Neighbours, AreAllPairsWithinTheSupport) {
     for (Index a = 0; a < body.n; ++a) {
       std::vector<Index> expected;
       for (Index b = 0; b < body.n; ++b) {
-        if (b != a && (body.position(b) - body.position(a)).norm() < 0.23) expected.push_back(b);
+        if (b != a && (body.position(b) - body.position(a)).norm() < 0.23)
+          expected.push_back(b);
       }
-      EXPECT_EQ(std::vector<Index>(&rows.other[rows.begin[a]], &rows.other[rows.begin[a + 1]]), expected);
+      EXPECT_EQ(std::vector<Index>(&rows.other[rows.begin[a]], &rows.other[rows.begin[a + 1]]),
+                expected);
     }
   }
 }
@@ -36,7 +40,8 @@ TEST(Neighbours, AreAllPairsWithinTheSupport) {
 TEST(Neighbours, TooSmallASupportIsAnInputError) {
   const Body body = lattice(3, 4, 0.1);
   try {
-    TotalLagrangianSph(body, rubber(Dimension::three_d), options(0, PenaltyForm::none, 1.01), one_thread);
+    TotalLagrangianSph(body, rubber(Dimension::three_d), options(0, PenaltyForm::none, 1.01),
+                       one_thread);
     FAIL() << "no error";
   } catch (const InputError& e) {
     EXPECT_EQ(e.key(), "tlsph.support");
@@ -63,13 +68,16 @@ TEST(Threads, GiveTheSameBits) {
 TEST(Penalty, WithoutFactorIsNoPenaltyAtAll) {
   const Body body = lattice(2, 9, 0.25);
   const Column u = random_column(body, 0.004, 1);
-  TotalLagrangianSph none(body, rubber(Dimension::plane_strain), options(0, PenaltyForm::none), one_thread);
+  TotalLagrangianSph none(body, rubber(Dimension::plane_strain), options(0, PenaltyForm::none),
+                          one_thread);
   for (const PenaltyForm penalty : {PenaltyForm::ganzenmueller, PenaltyForm::potential}) {
-    TotalLagrangianSph zero(body, rubber(Dimension::plane_strain), options(0, penalty), one_thread);
+    TotalLagrangianSph zero(body, rubber(Dimension::plane_strain), options(0, penalty),
+                            one_thread);
     EXPECT_EQ(forces(zero, u, {}), forces(none, u, {}));
     EXPECT_TRUE(zero.neighbours().stiffness.empty());
     EXPECT_TRUE(zero.has_potential());
-    TotalLagrangianSph some(body, rubber(Dimension::plane_strain), options(0.1, penalty), one_thread);
+    TotalLagrangianSph some(body, rubber(Dimension::plane_strain), options(0.1, penalty),
+                            one_thread);
     EXPECT_NE(forces(some, u, {}), forces(none, u, {}));
   }
 }
@@ -81,19 +89,23 @@ TEST(Penalty, IsEquation28) {
   const double psi = 0.3;
   TotalLagrangianSph model(body, problem, options(psi), one_thread);
   TotalLagrangianSph bare(body, problem, options(0), one_thread);
-  const Column u = random_column(body, 0.004, 1), f = forces(model, u, {}), f_bare = forces(bare, u, {});
+  const Column u = random_column(body, 0.004, 1), f = forces(model, u, {}),
+               f_bare = forces(bare, u, {});
   std::vector<Mat3> H(body.n);
   model.gradients(u, H);
   const double R = 2.4 * body.h, scale = largest(f);
   for (Index i = 0; i < body.n; ++i) {
     Vec3 penalty = Vec3::Zero();
     for (Index j = 0; j < body.n; ++j) {
-      const Vec3 X = body.position(j) - body.position(i), x = X + at(body, u, j) - at(body, u, i), n = x.normalized();
+      const Vec3 X = body.position(j) - body.position(i),
+                 x = X + at(body, u, j) - at(body, u, i), n = x.normalized();
       if (j == i || X.norm() >= R) continue;
       const double delta_ij = (x - X - H[i] * X).dot(n), delta_ji = (x - X - H[j] * X).dot(n);
       const double w = Kernel(KernelShape::cubic_spline, 2, R).value(X.norm());
-      const double areas = body.V[i] * body.V[j] / body.thickness;  // force for the whole thickness
-      penalty += psi * areas * w / X.squaredNorm() * problem.material.E / 2 * (delta_ij + delta_ji) * n;
+      const double areas =
+          body.V[i] * body.V[j] / body.thickness;  // force for the whole thickness
+      penalty += psi * areas * w / X.squaredNorm() * problem.material.E / 2 *
+                 (delta_ij + delta_ji) * n;
     }
     EXPECT_LT((at(body, f, i) - at(body, f_bare, i) - penalty).norm(), 1e-13 * scale);
   }
@@ -104,10 +116,12 @@ class Viscosity : public testing::TestWithParam<PenaltyForm> {};
 TEST_P(Viscosity, Dissipates) {
   for (const int dim : {2, 3}) {
     const Body body = lattice(dim, dim == 3 ? 6 : 10, 0.25);
-    const scene::Problem problem = rubber(dim == 3 ? Dimension::three_d : Dimension::plane_strain);
+    const scene::Problem problem =
+        rubber(dim == 3 ? Dimension::three_d : Dimension::plane_strain);
     TlsphOptions viscous = options(0.1, GetParam());
     viscous.alpha = 0.7, viscous.beta = 1.3;
-    TotalLagrangianSph with(body, problem, viscous, one_thread), without(body, problem, options(0.1, GetParam()), one_thread);
+    TotalLagrangianSph with(body, problem, viscous, one_thread),
+        without(body, problem, options(0.1, GetParam()), one_thread);
     EXPECT_TRUE(with.viscous());
     EXPECT_FALSE(without.viscous());
     EXPECT_EQ(without.viscous_damping_ratio(1e4), 0);
@@ -138,7 +152,8 @@ TEST_P(Viscosity, IsAbsentInRigidMotionAndBetweenPartingParticles) {
   const Mat3 F = rotation(3, 0.4) + Mat3::Identity();
   Mat3 spin;
   spin << 0, -30, 10, 30, 0, -5, -10, 5, 0;
-  const Column rest(u.size(), 0.0), closing = affine(body, -50 * F), f_rest = forces(with, u, rest);
+  const Column rest(u.size(), 0.0), closing = affine(body, -50 * F),
+                                    f_rest = forces(with, u, rest);
   const auto drag = [&](const Column& v) {
     Column d = forces(with, u, v);
     for (std::size_t i = 0; i < d.size(); ++i) d[i] -= f_rest[i];
@@ -150,7 +165,8 @@ TEST_P(Viscosity, IsAbsentInRigidMotionAndBetweenPartingParticles) {
   EXPECT_EQ(drag(affine(body, 50 * F)), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Penalties, Viscosity, testing::Values(PenaltyForm::ganzenmueller, PenaltyForm::potential));
+INSTANTIATE_TEST_SUITE_P(Penalties, Viscosity,
+                         testing::Values(PenaltyForm::ganzenmueller, PenaltyForm::potential));
 
 TEST(State, TurnedInsideOutIsReportedWithItsLowestParticle) {
   const Body body = lattice(3, 6, 0.1);
@@ -179,7 +195,8 @@ TEST(State, TurnedInsideOutIsReportedWithItsLowestParticle) {
 
 TEST(InstructionSets, AgreeToRoundOff) {
   const Body body = lattice(3, 6, 0.25);
-  const Neighbours rows = find_neighbours(body, body.V, Kernel(KernelShape::cubic_spline, 3, 0.24), 1e6, one_thread);
+  const Neighbours rows = find_neighbours(
+      body, body.V, Kernel(KernelShape::cubic_spline, 3, 0.24), 1e6, one_thread);
   const Column u = random_column(body, 0.004, 1), v = random_column(body, 10, 2);
   const auto run = [&](Isa isa, PenaltyForm penalty) {
     Column records(static_cast<std::size_t>(body.n) * 24, 0.0), f(u.size(), 0.0);
@@ -190,11 +207,13 @@ TEST(InstructionSets, AgreeToRoundOff) {
     loops.forces(rows, 0, body.n, {1e3, 1, 1e-4}, s);
     return f;
   };
-  for (const PenaltyForm penalty : {PenaltyForm::none, PenaltyForm::ganzenmueller, PenaltyForm::potential}) {
+  for (const PenaltyForm penalty :
+       {PenaltyForm::none, PenaltyForm::ganzenmueller, PenaltyForm::potential}) {
     const Column expected = run(Isa::baseline, penalty);
     for (int isa = 1; isa <= static_cast<int>(best_isa()); ++isa) {
       const Column found = run(static_cast<Isa>(isa), penalty);
-      for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-13 * largest(expected));
+      for (std::size_t i = 0; i < found.size(); ++i)
+        EXPECT_NEAR(found[i], expected[i], 1e-13 * largest(expected));
     }
   }
 }
@@ -203,8 +222,10 @@ TEST(Method, IsRegisteredWithItsSettings) {
   const scene::MethodInfo& info = scene::MethodRegistry::instance().find("tlsph").info();
   std::vector<std::string> keys;
   for (const scene::ParameterInfo& p : info.parameters) keys.push_back(p.key);
-  EXPECT_THAT(keys, testing::IsSupersetOf({"kernel", "support", "psi", "penalty", "alpha", "beta"}));
-  EXPECT_NO_THROW(scene::Settings("tlsph", info.parameters, {{"kernel", "wendland-c2"}, {"psi", "0"}}));
+  EXPECT_THAT(keys,
+              testing::IsSupersetOf({"kernel", "support", "psi", "penalty", "alpha", "beta"}));
+  EXPECT_NO_THROW(
+      scene::Settings("tlsph", info.parameters, {{"kernel", "wendland-c2"}, {"psi", "0"}}));
   EXPECT_THROW(scene::Settings("tlsph", info.parameters, {{"kernel", "gaussian"}}), InputError);
   EXPECT_THROW(scene::Settings("tlsph", info.parameters, {{"psi", "-1"}}), InputError);
 }

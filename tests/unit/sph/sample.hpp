@@ -1,5 +1,6 @@
 #pragma once
-// A perturbed lattice with volumes of its own, and random states on it. SPH needs no triangulation, so none is made.
+// A perturbed lattice with volumes of its own, and random states on it. SPH needs no
+// triangulation, so none is made.
 
 #include "scene/geometry.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
@@ -10,9 +11,12 @@
 namespace concord::sph {
 
 /// Uniform in [-1, 1).
-inline double random(std::uint64_t seed, std::uint64_t i) { return 2 * scene::uniform_random(seed, i, 0) - 1; }
+inline double random(std::uint64_t seed, std::uint64_t i) {
+  return 2 * scene::uniform_random(seed, i, 0) - 1;
+}
 
-/// count particles a side at spacing .1 m, each moved by up to `perturb` spacings; volumes within 20 % of the spacing's.
+/// count particles a side at spacing .1 m, each moved by up to `perturb` spacings; volumes
+/// within 20 % of the spacing's.
 inline Body lattice(int dim, int count, double perturb) {
   Body body;
   body.dim = dim;
@@ -32,7 +36,8 @@ inline Body lattice(int dim, int count, double perturb) {
   return body;
 }
 
-inline scene::Problem rubber(Dimension dimension, scene::MaterialModel model = scene::MaterialModel::neo_hookean) {
+inline scene::Problem rubber(Dimension dimension,
+                             scene::MaterialModel model = scene::MaterialModel::neo_hookean) {
   scene::Problem problem;
   problem.dimension = dimension;
   problem.thickness = space_dim(dimension) == 2 ? 0.5 : 1;
@@ -81,7 +86,8 @@ inline double largest(const Column& c) {
   return m;
 }
 
-inline TlsphOptions options(double psi, PenaltyForm penalty = PenaltyForm::ganzenmueller, double support = 2.4) {
+inline TlsphOptions options(double psi, PenaltyForm penalty = PenaltyForm::ganzenmueller,
+                            double support = 2.4) {
   TlsphOptions o;
   o.psi = psi, o.penalty = penalty, o.support = support;
   return o;
