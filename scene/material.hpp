@@ -226,7 +226,8 @@ struct StVenantKirchhoff {
   }
 };
 
-/// The law of a problem: material model and what the third direction does.
+/// The law of a problem with an elastic material: material model and what the third direction
+/// does.
 class ElasticLaw {
  public:
   ElasticLaw(const Material& material, Dimension dimension);
@@ -250,8 +251,10 @@ class ElasticLaw {
         return f(NeoHookeanIsochoric{m_lambda, m_mu});
       case MaterialModel::st_venant_kirchhoff:
         return f(StVenantKirchhoff{m_lambda, m_mu});
+      case MaterialModel::j2_hencky:  // stress depends on history: methods hold that
+        break;
     }
-    throw std::logic_error("material model without a law");
+    throw std::logic_error("material model without an elastic law");
   }
 
   MaterialModel m_model;

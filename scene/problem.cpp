@@ -14,8 +14,9 @@ constexpr double same = 1e-11;
 }  // namespace
 
 const std::vector<std::string>& quantity_fields() {
-  static const std::vector<std::string> fields{"displacement", "velocity", "displacement_error",
-                                               "von_mises",    "pressure", "unbalanced_force"};
+  static const std::vector<std::string> fields{
+      "displacement", "velocity",       "displacement_error", "von_mises",
+      "pressure",     "plastic_strain", "kirchhoff_mises",    "unbalanced_force"};
   return fields;
 }
 

@@ -14,17 +14,31 @@
 
 namespace concord::scene {
 
-/// Stress laws; energies and sources in material.hpp.
-enum class MaterialModel { neo_hookean, neo_hookean_isochoric, st_venant_kirchhoff };
+/// Stress laws; energies and sources in material.hpp. j2_hencky: finite-strain J2 plasticity
+/// with logarithmic strains and Kirchhoff stress, Algorithm 2 of the Continuum Bond Method
+/// paper.
+enum class MaterialModel { neo_hookean, neo_hookean_isochoric, st_venant_kirchhoff, j2_hencky };
+
+/// Isotropic hardening, Eq. (24) of the Continuum Bond Method paper: flow stress
+/// tau_y(eps_p) = yield_stress + modulus eps_p + (saturation_stress - yield_stress)(1 -
+/// exp(-exponent eps_p)).
+struct Hardening {
+  double yield_stress = 0;       ///< tau_y0 [Pa], > 0
+  double saturation_stress = 0;  ///< tau_y,inf [Pa], > 0
+  double modulus = 0;            ///< h_0 [Pa]
+  double exponent = 0;           ///< alpha, >= 0
+};
 
 /// Isotropic elastic constants and density of the homogeneous body.
 struct Material {
   MaterialModel model = MaterialModel::neo_hookean;
-  double rho0 = 0;    ///< reference density [kg/m^3]
-  double E = 0;       ///< Young's modulus [Pa]
-  double nu = 0;      ///< Poisson's ratio, -1 < nu < 0.5
-  double lambda = 0;  ///< Lame's first parameter [Pa], Eq. (54) of the Delaunay paper
-  double mu = 0;      ///< shear modulus [Pa]
+  double rho0 = 0;      ///< reference density [kg/m^3]
+  double E = 0;         ///< Young's modulus [Pa]
+  double nu = 0;        ///< Poisson's ratio, -1 < nu < 0.5
+  double lambda = 0;    ///< Lame's first parameter [Pa], Eq. (54) of the Delaunay paper
+  double mu = 0;        ///< shear modulus [Pa]
+  Hardening hardening;  ///< of plastic models
+  bool plastic() const { return model == MaterialModel::j2_hencky; }
   double longitudinal_wave_speed() const;  ///< c_p = sqrt((lambda + 2 mu)/rho0) [m/s], Eq. (55)
   double shear_wave_speed() const;         ///< c_s = sqrt(mu/rho0) [m/s]
 };
@@ -62,9 +76,10 @@ struct Quantity {
 };
 
 /// "displacement" [m], "velocity" [m/s], "displacement_error" [m] (needs an exact solution),
-/// "von_mises" [Pa], "pressure" [Pa], "unbalanced_force" [N] (internal + external force at
-/// points without a prescribed displacement; where everything is prescribed, at every point of
-/// the restriction).
+/// "von_mises" [Pa], "pressure" [Pa], "plastic_strain" (equivalent, eps_p, plastic materials
+/// only), "kirchhoff_mises" (tau_eq = sqrt(3/2 dev tau : dev tau) of the Kirchhoff stress)
+/// [Pa], "unbalanced_force" [N] (internal + external force at points without a prescribed
+/// displacement; where everything is prescribed, at every point of the restriction).
 const std::vector<std::string>& quantity_fields();
 
 /// How the points of particle methods, and the meshes of the FEM, lie.

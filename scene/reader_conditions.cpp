@@ -62,6 +62,9 @@ void read_value(const Section& section, const Symbols& symbols, const Problem& p
   const ConfigNode& node = section.require("value");
   if (is_word(node, "exact")) {
     const VectorExpression& exact = exact_of(node, problem);
+    if (!displacement && problem.material.plastic())
+      throw bad_value(node, "expressions: the stress of a plastic material does not follow "
+                            "from the displacement alone");
     bc.value_from_exact = true;
     if (displacement) bc.value = exact;
     return;

@@ -4,9 +4,11 @@
 #include "scene/suggest.hpp"
 #include "scene/unit_text.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <exception>
+#include <map>
 
 namespace concord::scene {
 namespace {
@@ -70,6 +72,35 @@ void read_constants(const Section& section, Material& material) {
   }
   material.lambda =
       material.nu * material.E / ((1 + material.nu) * (1 - 2 * material.nu));  // Eq. (54)
+}
+
+void read_hardening(const Section& section, Problem& problem) {
+  if (problem.dimension == Dimension::plane_stress)
+    throw bad_value(section.require("model"),
+                    "an elastic model in plane stress; j2-hencky in 3D and plane strain");
+  Hardening& hardening = problem.material.hardening;
+  hardening.yield_stress = section.positive("yield_stress", unit::pressure);
+  hardening.saturation_stress = hardening.yield_stress;
+  if (section.has("saturation_stress"))
+    hardening.saturation_stress = section.positive("saturation_stress", unit::pressure);
+  if (section.has("hardening_modulus"))
+    hardening.modulus = section.quantity("hardening_modulus", unit::pressure);
+  if (section.has("saturation_exponent"))
+    hardening.exponent = section.number("saturation_exponent");
+  if (hardening.exponent < 0)
+    throw bad_value(section.require("saturation_exponent"),
+                    section.allowed("saturation_exponent"));
+  // The flow stress must not fall faster than the elastic stress at fixed strain, 3 mu (a
+  // snap-back of the material point), and must stay positive.
+  const double steepest =
+      hardening.modulus + std::min(0.0, hardening.exponent * (hardening.saturation_stress -
+                                                              hardening.yield_stress));
+  if (hardening.modulus < 0)
+    throw bad_value(section.require("hardening_modulus"), section.allowed("hardening_modulus"));
+  if (!(steepest > -3 * problem.material.mu))
+    throw bad_value(section.require("saturation_exponent"),
+                    "softening slower than three times the shear modulus: hardening_modulus + "
+                    "saturation_exponent (saturation_stress - yield_stress) > -3 mu");
 }
 
 Symbols constants(const Problem& problem) {
@@ -146,12 +177,15 @@ void read_material(const Section& scene, Problem& problem) {
                      "a table [material] with model, density and elastic constants");
   const Section section(*table);
   const std::string model = section.word("model");
-  problem.material.model = model == "neo-hookean" ? MaterialModel::neo_hookean
-                           : model == "neo-hookean-isochoric"
-                               ? MaterialModel::neo_hookean_isochoric
-                               : MaterialModel::st_venant_kirchhoff;
+  static const std::map<std::string, MaterialModel> models{
+      {"neo-hookean", MaterialModel::neo_hookean},
+      {"neo-hookean-isochoric", MaterialModel::neo_hookean_isochoric},
+      {"st-venant-kirchhoff", MaterialModel::st_venant_kirchhoff},
+      {"j2-hencky", MaterialModel::j2_hencky}};
+  problem.material.model = models.at(model);
   problem.material.rho0 = section.positive("density", unit::density);
   read_constants(section, problem.material);
+  if (problem.material.plastic()) read_hardening(section, problem);
 }
 
 Symbols read_parameters(const Section& scene, Problem& problem) {

@@ -25,6 +25,9 @@ void read_field(const Section& section, const Problem& problem, Quantity& quanti
   if (quantity.field == "displacement_error" && !problem.exact_displacement)
     throw bad_value(section.require("field"),
                     "displacement_error in scenes with [exact] displacement only");
+  if (quantity.field == "plastic_strain" && !problem.material.plastic())
+    throw bad_value(section.require("field"),
+                    "plastic_strain in scenes with a plastic material only");
   if (quantity.field == "velocity" && problem.is_static)
     throw bad_value(section.require("field"), "velocity in dynamic scenes only");
 }

@@ -25,10 +25,10 @@ const std::vector<KeyInfo>& scene_keys() {
        "Parameter of the .geo and of expressions, by its own name, in SI units"},
 
       {"material.model", "text", "",
-       "neo-hookean | neo-hookean-isochoric | st-venant-kirchhoff",
+       "neo-hookean | neo-hookean-isochoric | st-venant-kirchhoff | j2-hencky",
        "Stress law: W = mu/2 (tr C - 3) - mu ln J + lambda/2 (ln J)^2; W = mu/2 (J^(-2/3) tr C "
-       "- 3) + kappa/4 (J^2 - 1 - 2 ln J), kappa = lambda + 2 mu/3; or W = lambda/2 (tr E)^2 + "
-       "mu E:E"},
+       "- 3) + kappa/4 (J^2 - 1 - 2 ln J), kappa = lambda + 2 mu/3; W = lambda/2 (tr E)^2 + "
+       "mu E:E; or finite-strain J2 plasticity with logarithmic strains, not in plane stress"},
       {"material.density", "kg/m^3", "", "> 0", "Mass per reference volume"},
       {"material.youngs_modulus", "Pa", "", "> 0", "E, together with poissons_ratio"},
       {"material.poissons_ratio", "1", "", "-1 < nu < 0.5",
@@ -36,6 +36,12 @@ const std::vector<KeyInfo>& scene_keys() {
       {"material.shear_modulus", "Pa", "", "> 0",
        "mu, together with bulk_modulus or poissons_ratio"},
       {"material.bulk_modulus", "Pa", "", "> 0", "kappa, together with shear_modulus"},
+      {"material.yield_stress", "Pa", "", "> 0",
+       "j2-hencky: initial flow (Kirchhoff) stress tau_y0 of tau_y = tau_y0 + h_0 eps_p + "
+       "(tau_y,inf - tau_y0)(1 - exp(-alpha eps_p))"},
+      {"material.saturation_stress", "Pa", "yield_stress", "> 0", "j2-hencky: tau_y,inf"},
+      {"material.hardening_modulus", "Pa", "0 Pa", ">= 0", "j2-hencky: h_0"},
+      {"material.saturation_exponent", "1", "0", ">= 0", "j2-hencky: alpha"},
 
       {"boundary[].group", "text", "", "a physical group of the .geo",
        "Where the condition holds"},
@@ -61,7 +67,7 @@ const std::vector<KeyInfo>& scene_keys() {
        "Average, reaction: where; maximum: restriction"},
       {"quantity[].field", "text", "displacement",
        "displacement | velocity | displacement_error | von_mises | pressure | "
-       "unbalanced_force",
+       "plastic_strain | kirchhoff_mises | unbalanced_force",
        "Average, maximum: of which field"},
       {"quantity[].where", "text", "everywhere", "everywhere | interior",
        "Maximum: interior leaves the surface of the body out"},
