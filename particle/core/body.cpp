@@ -50,14 +50,15 @@ void renumber(Triangulation& t, const std::vector<Index>& particle) {
 
 }  // namespace
 
-Body make_body(const scene::Problem& problem, scene::Mesh mesh) {
+Body make_body(const scene::Problem& problem, scene::Mesh mesh, CellSource cells) {
   Body body;
   body.dim = mesh.dim;
   body.stride = stride_of(mesh.dim);
   body.n = static_cast<Index>(mesh.nodes.size());
   body.h = mesh.h;
   body.thickness = problem.thickness;
-  body.triangulation = triangulate(mesh, problem);
+  body.triangulation = cells == CellSource::delaunay ? triangulate(mesh, problem)
+                                                     : mesh_triangulation(mesh, problem);
   body.node = sweep_order(mesh);
   body.particle.resize(body.n);
   for (Index a = 0; a < body.n; ++a) body.particle[body.node[a]] = a;
@@ -87,13 +88,14 @@ Body make_body(const scene::Problem& problem, scene::Mesh mesh) {
   return body;
 }
 
-Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed) {
+Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed,
+               CellSource cells) {
   scene::MeshRequest request;
   request.h = h;
   request.layout = problem.layout;
   scene::Mesh mesh = scene::make_mesh(problem, request);
   if (perturb > 0) scene::perturb(mesh, problem, perturb, seed);
-  return make_body(problem, std::move(mesh));
+  return make_body(problem, std::move(mesh), cells);
 }
 
 std::vector<Index> fixed_blocks(Index n) {

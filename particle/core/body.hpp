@@ -36,12 +36,20 @@ struct Body {
   }
 };
 
+/// Where the simplices between the particles come from.
+enum class CellSource {
+  delaunay,  ///< Delaunay triangulation of the particles
+  mesh       ///< the cells of gmsh's mesh
+};
+
 /// Meshes the geometry at spacing h, perturbs, triangulates and sorts. Throws InputError
 /// (geometry cannot be filled).
-Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed);
+Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed,
+               CellSource cells = CellSource::delaunay);
 
 /// The same from a mesh that is there already (tests, benchmarks).
-Body make_body(const scene::Problem& problem, scene::Mesh mesh);
+Body make_body(const scene::Problem& problem, scene::Mesh mesh,
+               CellSource cells = CellSource::delaunay);
 
 /// Contiguous ranges of particles, the same for every number of threads: block k is [begin[k],
 /// begin[k+1]). About 16384 particles each, at most 16 blocks.

@@ -1,5 +1,5 @@
 #pragma once
-// What a problem's elastic material is to the kernels.
+// What a problem's material is to the kernels.
 
 #include "particle/core/stress_kernel.hpp"
 #include "scene/material.hpp"
@@ -14,7 +14,7 @@ namespace concord::particle {
 /// law with lambda* = 2 lambda mu / (lambda + 2 mu) (from S_33 = 0); the neo-Hookean solids
 /// solve P_33 = 0.
 struct KernelMaterial {
-  LameConstants lame;
+  StressConstants constants;
   StressLaw law;
 };
 
@@ -24,13 +24,15 @@ inline KernelMaterial kernel_material(const scene::Problem& problem) {
   const double plane_lambda = 2 * m.lambda * m.mu / (m.lambda + 2 * m.mu);
   switch (m.model) {
     case scene::MaterialModel::neo_hookean:
-      return {{m.lambda, m.mu},
+      return {{{m.lambda, m.mu}},
               plane_stress ? StressLaw::neo_hookean_plane_stress : StressLaw::neo_hookean};
     case scene::MaterialModel::neo_hookean_isochoric:
-      return {{m.lambda, m.mu},
+      return {{{m.lambda, m.mu}},
               plane_stress ? StressLaw::isochoric_plane_stress : StressLaw::isochoric};
     case scene::MaterialModel::st_venant_kirchhoff:
-      return {{plane_stress ? plane_lambda : m.lambda, m.mu}, StressLaw::st_venant_kirchhoff};
+      return {{{plane_stress ? plane_lambda : m.lambda, m.mu}}, StressLaw::st_venant_kirchhoff};
+    case scene::MaterialModel::j2_hencky:
+      return {{{m.lambda, m.mu}}, StressLaw::j2_hencky};
   }
   throw std::logic_error("material model without a stress kernel");
 }
@@ -50,6 +52,8 @@ template <class F> auto with_law(StressLaw law, const F& f) {
       return f(std::integral_constant<StressLaw, isochoric_plane_stress>{});
     case st_venant_kirchhoff:
       return f(std::integral_constant<StressLaw, st_venant_kirchhoff>{});
+    case j2_hencky:
+      return f(std::integral_constant<StressLaw, j2_hencky>{});
   }
   throw std::logic_error("stress law without a kernel");
 }

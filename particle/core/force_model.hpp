@@ -4,6 +4,7 @@
 // at compile time.
 
 #include "particle/core/body.hpp"
+#include "particle/core/constitution.hpp"
 #include "particle/core/parallel.hpp"
 
 #include <Eigen/SparseCore>
@@ -22,7 +23,8 @@ struct BadState {
 
 /// Stored energies [J].
 struct Energies {
-  double internal = 0;  ///< sum V_a U(F_a), Eq. (14)
+  double internal = 0;  ///< sum V_a U(F_a), Eq. (14); with plasticity the elastic part
+  double plastic = 0;   ///< plastic work sum V_a Psi_p(eps_p,a)
   double stabilisation =
       0;  ///< contact energy (15) or penalty energy; 0 where the stabilisation has no potential
 };
@@ -32,12 +34,18 @@ struct Energies {
 /// accuracy.
 class ForceModel {
  public:
-  explicit ForceModel(const Body& body) : m_body(body) {}
+  ForceModel(const Body& body, const scene::Problem& problem)
+      : m_body(body), m_constitution(problem, body.n) {}
   virtual ~ForceModel() = default;
   ForceModel(const ForceModel&) = delete;
   ForceModel& operator=(const ForceModel&) = delete;
 
   const Body& body() const { return m_body; }
+  const Constitution& constitution() const { return m_constitution; }
+
+  /// Takes the material state of the last forces() as the start of later evaluations, which all
+  /// begin from the last state taken: to be called once for every accepted step.
+  void commit() { m_constitution.commit(); }
 
   /// f = internal and stabilisation force [N], overwritten; columns of `stride` doubles a
   /// particle. `v` is read only by models with viscosity. No allocation. Throws BadState for
@@ -70,7 +78,26 @@ class ForceModel {
   virtual std::size_t interactions() const = 0;
 
  protected:
+  /// Adds sum V_a U(H_a) and the plastic work; gradient(a) gives H_a.
+  template <class G>
+  void add_internal_energy(Energies& e, const Executor& executor, const G& gradient) const {
+    e.internal += executor.sum(m_body.n, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (auto a = static_cast<Index>(begin); a < static_cast<Index>(end); ++a)
+        sum += m_body.V[a] * m_constitution.energy(a, gradient(a)).stored;
+      return sum;
+    });
+    if (!m_constitution.plastic()) return;
+    e.plastic += executor.sum(m_body.n, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (auto a = static_cast<Index>(begin); a < static_cast<Index>(end); ++a)
+        sum += m_body.V[a] * m_constitution.energy(a, gradient(a)).plastic;
+      return sum;
+    });
+  }
+
   const Body& m_body;
+  Constitution m_constitution;
 };
 
 }  // namespace concord::particle

@@ -175,6 +175,7 @@ void Leapfrog::step(double dt) {
   drift(dt);
   m_dt_last = dt;
   evaluate();
+  m_model.commit();
   if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
 }
 
@@ -242,6 +243,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
   };
   try {
     evaluate();
+    m_model.commit();
     m_work.start(load_time(), m_u, m_f);
     write(recorder, true, true);
     advance(options, recorder, outcome);

@@ -53,6 +53,7 @@ struct Run {
       result.steps = outcome.iterations;
       result.wall_s = outcome.solve_s;
       finish(solver.state());
+      if (problem.material.plastic()) recorder.add_invariants(result, false);
     };
     try {
       solver.run(options, recorder, outcome);
@@ -72,7 +73,11 @@ struct Run {
     options.frames = problem.frames;
     options.history_rows = problem.history_rows;
     options.progress = request.progress;
-    if (problem.is_static) relaxation(options);
+    const double duration = settings.number("duration");
+    if (problem.is_static && duration > 0)
+      options.ramp_time = options.end_time = duration;
+    else if (problem.is_static)
+      relaxation(options);
     Leapfrog integrator(problem, model, constraints, loads, executor, options.ramp_time);
     LeapfrogOutcome outcome;
     const auto tell = [&] {
@@ -80,7 +85,7 @@ struct Run {
       result.dt = outcome.dt;
       result.wall_s = outcome.loop_s;
       finish(integrator.state());
-      if (!problem.is_static)
+      if (!problem.is_static || duration > 0)
         recorder.add_invariants(result, options.damping > 0 || model.viscous());
     };
     try {
@@ -90,7 +95,7 @@ struct Run {
       throw;
     }
     tell();
-    if (problem.is_static && !outcome.settled) {
+    if (options.stop_at_residual > 0 && !outcome.settled) {
       throw SolveError(
           "equilibrium", outcome.steps, outcome.t, -1,
           "the damped motion did not settle to the asked residual; more time: settle_time");
@@ -133,6 +138,11 @@ const std::vector<scene::ParameterInfo>& solver_parameters() {
       {"dt", "s", "0", ">= 0", "fixed time step; 0: from dt_factor", 0},
       {"damping", "1/s", "0", ">= 0",
        "mass-proportional damping rate c: force -c m v (0 on a static scene: critical)", 0},
+      {"duration", "s", "0", ">= 0",
+       "explicit on a static scene: t runs from 0 to 1 in this time, with the density's "
+       "inertia and "
+       "no damping but the one asked for; 0: damped dynamics until it has settled",
+       0},
       {"settle_time", "1", "60", "> 2",
        "damped dynamics: longest time, in periods 4 L/c_s of the body", 2},
       {"tolerance", "1", "1e-12", "[1e-15, 1e-2]",
@@ -146,6 +156,8 @@ ParticleMethod::ParticleMethod(scene::MethodInfo own) : m_info(std::move(own)) {
   m_info.parameters.insert(m_info.parameters.end(), shared.begin(), shared.end());
 }
 
+CellSource ParticleMethod::cells(const scene::Settings&) const { return CellSource::delaunay; }
+
 void ParticleMethod::divide(Body&, const scene::Problem&, const scene::Settings&) const {}
 
 void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
@@ -153,7 +165,7 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
-  Body body = make_body(problem, request.h, request.perturb, request.seed);
+  Body body = make_body(problem, request.h, request.perturb, request.seed, cells(settings));
   divide(body, problem, settings);
   const std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
   const Constraints constraints(problem, body);
@@ -170,6 +182,11 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   if (solver == "static" && !problem.is_static) {
     throw InputError({problem.file.string(), 0, 0}, m_info.name + ".solver", "static",
                      "auto or explicit for a scene with an end_time");
+  }
+  if (settings.number("duration") > 0 && !(problem.is_static && solver == "explicit")) {
+    throw InputError({problem.file.string(), 0, 0}, m_info.name + ".duration",
+                     settings.word("solver") + " solver, or a scene with an end_time",
+                     "solver = explicit on a static scene");
   }
   if (problem.is_static && solver != "explicit") {
     if (model->viscous()) {

@@ -21,6 +21,9 @@ class ParticleMethod : public scene::Method {
   void run(const scene::Problem& problem, const scene::RunRequest& request,
            scene::Result& result) const final;
 
+  /// Which cells lie between the particles of this formulation.
+  virtual CellSource cells(const scene::Settings& settings) const;
+
   /// How this formulation divides the body among its particles: may replace V and m of `body`,
   /// which come with the barycentric volumes sum |t|/(n+1). Called before make_model.
   virtual void divide(Body& body, const scene::Problem& problem,

@@ -16,7 +16,7 @@ inline constexpr int plastic_width = 8;
 /// History variables of one material point.
 struct PlasticState {
   Mat3 A = Mat3::Zero();  ///< C_p^-1 - I = F_p^-1 F_p^-T - I, symmetric: small plastic strains
-                          ///< keep their relative accuracy
+                          ///< keep their relative accuracy; det(I + A) = 1
   double eps_p = 0;       ///< equivalent plastic strain
 };
 
@@ -89,6 +89,7 @@ class PlasticHistory {
   Index m_n;
   int m_components;  ///< 4 in plane strain (11, 22, 33, 12), 6 in 3D, then eps_p
   std::vector<Column> m_old, m_new;  ///< [component][particle]
+  bool m_has_trial = false;          ///< a force evaluation came after the last commit
 };
 
 }  // namespace concord::particle

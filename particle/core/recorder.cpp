@@ -24,7 +24,9 @@ std::string history_name(const scene::Quantity& q, const std::string& entry) {
       break;
   }
   if (q.field == "velocity") return entry + "_m_s";
-  if (q.field == "von_mises" || q.field == "pressure") return entry + "_Pa";
+  if (q.field == "von_mises" || q.field == "pressure" || q.field == "kirchhoff_mises")
+    return entry + "_Pa";
+  if (q.field == "plastic_strain") return entry;
   return entry + (q.field == "unbalanced_force" ? "_N" : "_m");
 }
 
@@ -34,7 +36,6 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                    const Constraints& constraints, const Executor& executor,
                    const std::filesystem::path& folder, bool frames)
     : m_problem(problem), m_model(model), m_constraints(constraints), m_executor(executor),
-      m_law(problem.material, problem.dimension),
       m_free(constraints.dofs().empty() && ExternalLoads(problem, model.body()).none()) {
   const Body& body = model.body();
   for (const scene::Quantity& q : problem.quantities) {
@@ -56,6 +57,7 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                            "external_work_J", "energy_balance_J"}) {
     columns.emplace_back(name);
   }
+  if (model.constitution().plastic()) columns.emplace_back("plastic_work_J");
   for (const char* axis : axes)
     columns.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
   for (const char* axis : axes)
@@ -79,6 +81,7 @@ Balance Recorder::balance(const State& state) {
   Balance b;
   const Energies e = m_model.energies(state.u, m_executor);
   b.internal = e.internal;
+  b.plastic = e.plastic;
   b.stabilisation = e.stabilisation;
   b.external_work = state.external_work;
   for (Index a = 0; a < body.n; ++a) {
@@ -96,8 +99,7 @@ void Recorder::row(const State& state) {
   const Balance b = balance(state);
   if (!m_any) m_first = b;
   m_any = true;
-  m_largest_energy = std::max(m_largest_energy, b.kinetic + b.internal + b.stabilisation +
-                                                    std::abs(b.external_work));
+  m_largest_energy = std::max(m_largest_energy, b.stored() + std::abs(b.external_work));
   m_energy_change = std::max(m_energy_change, std::abs(b.total() - m_first.total()));
   m_linear_change = std::max(m_linear_change, (b.linear - m_first.linear).norm());
   m_angular_change = std::max(m_angular_change, (b.angular - m_first.angular).norm());
@@ -108,6 +110,7 @@ void Recorder::row(const State& state) {
   for (const auto& [name, value] : quantities(state)) values.push_back(value);
   for (const double e : {b.kinetic, b.internal, b.stabilisation, b.external_work, b.total()})
     values.push_back(e);
+  if (m_model.constitution().plastic()) values.push_back(b.plastic);
   for (int i = 0; i < 3; ++i) values.push_back(b.linear[i]);
   for (int i = 0; i < 3; ++i) values.push_back(b.angular[i]);
   m_history.append(values);
@@ -116,12 +119,15 @@ void Recorder::row(const State& state) {
 std::vector<double> Recorder::values(const std::string& field, const State& state) {
   const Body& body = m_model.body();
   std::vector<double> result(body.n);
-  if (field == "von_mises" || field == "pressure") {
+  if (field == "von_mises" || field == "pressure" || field == "kirchhoff_mises" ||
+      field == "plastic_strain") {
     std::vector<Mat3> H(body.n);
     m_model.gradients(state.u, H);
-    std::vector<double> pressure;
-    result = von_mises(H, &pressure);
-    return field == "pressure" ? pressure : result;
+    if (field == "plastic_strain") return plastic_strains(H);
+    Stresses s = stresses(H);
+    return std::move(field == "pressure"    ? s.pressure
+                     : field == "von_mises" ? s.von_mises
+                                            : s.kirchhoff_mises);
   }
   std::vector<char> prescribed(body.n, 0);
   for (const PrescribedDof& dof : m_constraints.dofs()) prescribed[dof.particle] = 1;
@@ -218,15 +224,23 @@ std::vector<std::pair<std::string, double>> Recorder::quantities(const State& st
   return result;
 }
 
-std::vector<double> Recorder::von_mises(std::span<const Mat3> H,
-                                        std::vector<double>* pressure) const {
-  std::vector<double> result(H.size());
-  if (pressure) pressure->resize(H.size());
-  for (std::size_t a = 0; a < H.size(); ++a) {
-    const Mat3 sigma = scene::cauchy_stress(m_law.stress(H[a]), Mat3::Identity() + H[a]);
-    result[a] = scene::von_mises(sigma);
-    if (pressure) (*pressure)[a] = scene::pressure(sigma);
+Recorder::Stresses Recorder::stresses(std::span<const Mat3> H) const {
+  Stresses s;
+  for (Index a = 0; a < static_cast<Index>(H.size()); ++a) {
+    const Mat3 F = Mat3::Identity() + H[a];
+    const Mat3 P = m_model.constitution().stress(a, H[a]);
+    const Mat3 sigma = scene::cauchy_stress(P, F);
+    s.von_mises.push_back(scene::von_mises(sigma));
+    s.pressure.push_back(scene::pressure(sigma));
+    s.kirchhoff_mises.push_back(scene::von_mises(P * F.transpose()));
   }
+  return s;
+}
+
+std::vector<double> Recorder::plastic_strains(std::span<const Mat3> H) const {
+  std::vector<double> result;
+  for (Index a = 0; a < static_cast<Index>(H.size()); ++a)
+    result.push_back(m_model.constitution().plastic_strain(a, H[a]));
   return result;
 }
 
@@ -237,8 +251,7 @@ void Recorder::frame(const State& state) {
   std::vector<double> u, v, error;
   std::vector<Mat3> H(body.n);
   m_model.gradients(state.u, H);
-  std::vector<double> pressure;
-  const std::vector<double> mises = von_mises(H, &pressure);
+  const Stresses stress = stresses(H);
   for (Index a = 0; a < body.n; ++a) {
     const Vec3 u_a = at(state.u, a), v_a = at(state.v, a);
     x[a] = body.position(a) + u_a;
@@ -247,9 +260,15 @@ void Recorder::frame(const State& state) {
   }
   std::vector<scene::FrameField> fields{{"displacement", 3, u},
                                         {"velocity", 3, v},
-                                        {"von_mises", 1, mises},
-                                        {"pressure", 1, pressure},
+                                        {"von_mises", 1, stress.von_mises},
+                                        {"pressure", 1, stress.pressure},
+                                        {"kirchhoff_mises", 1, stress.kirchhoff_mises},
                                         {"volume", 1, body.V}};
+  std::vector<double> plastic;
+  if (m_model.constitution().plastic()) {
+    plastic = plastic_strains(H);
+    fields.push_back({"plastic_strain", 1, plastic});
+  }
   if (m_problem.exact_displacement) {
     error = values("displacement_error", state);
     fields.push_back({"displacement_error", 1, error});

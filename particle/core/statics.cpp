@@ -221,6 +221,7 @@ void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutc
     outcome.solve_s += std::chrono::duration<double>(Clock::now() - begin).count();
   };
   (void)evaluate(0);
+  m_model.commit();
   m_work.start(0, m_u, m_f);
   double step = 1.0 / options.load_steps;
   const double smallest = step / std::ldexp(1.0, options.most_halvings);
@@ -242,6 +243,7 @@ void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutc
           fmt::format("Newton's method does not converge beyond load parameter {:.6g}: {}", m_t,
                       m_failure));
     }
+    m_model.commit();
     m_t = t > 1 - 1e-12 ? 1.0 : t;
     outcome.t = m_t;
     if (m_work.follows_steps()) m_work.step(m_t, m_u, m_f);

@@ -2,6 +2,7 @@
 // Stress of W particles at a time, in lanes: the vectorised form of scene/material.hpp's laws,
 // tested against it.
 
+#include "particle/core/plasticity.hpp"
 #include "particle/core/simd.hpp"
 
 #include <algorithm>
@@ -21,7 +22,14 @@ enum class StressLaw {
   neo_hookean_plane_stress,
   isochoric,
   isochoric_plane_stress,
-  st_venant_kirchhoff
+  st_venant_kirchhoff,
+  j2_hencky  ///< with history: PlasticHistory
+};
+
+/// What the stress of a group of particles depends on beside H.
+struct StressConstants {
+  LameConstants lame;
+  PlasticHistory* history = nullptr;  ///< of plastic laws, else unused
 };
 
 template <StressLaw Law>
@@ -34,7 +42,7 @@ inline constexpr bool condenses_isochoric =
     Dim == 2 && Law == StressLaw::isochoric_plane_stress;
 
 /// Lanes a pass works on: one AVX-512 register, two AVX2 registers.
-inline constexpr int stress_width = 8;
+inline constexpr int stress_width = plastic_width;
 
 /// ln(1 + j) for |j| <= 1/4 by 2 artanh(j/(2+j)), eleven terms: truncation below 1e-18,
 /// relative error about 3e-16.
@@ -272,7 +280,7 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
 /// is written; both are columns of Dim vectors a particle. Returns a bit a particle with det F
 /// <= 0 or NaN.
 template <int Dim, StressLaw Law>
-CONCORD_INLINE unsigned stress_of_group(const LameConstants& c, int count,
+CONCORD_INLINE unsigned stress_of_group(const StressConstants& c, Index first, int count,
                                         const double* inverse_V, double* H, double* P) {
   constexpr int S = Lanes<Dim>::stride;
   double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width], j[stress_width];
@@ -286,7 +294,10 @@ CONCORD_INLINE unsigned stress_of_group(const LameConstants& c, int count,
       for (int i = 0; i < Dim; ++i) h[k * Dim + i][l] = l < count ? column[i] : 0.0;
     }
   }
-  stress<Dim, Law>(c, h, p, j);
+  if constexpr (Law == StressLaw::j2_hencky)
+    c.history->stress(first, count, h, p, j);
+  else
+    stress<Dim, Law>(c.lame, h, p, j);
   unsigned bad = 0;
   for (int l = 0; l < count; ++l) {
     double* Pa = P + static_cast<std::size_t>(l) * Dim * S;

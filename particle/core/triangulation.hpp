@@ -31,6 +31,10 @@ struct Triangulation {
 /// faces may differ by what a flat facet cuts off, h^2/4 of the local turning a facet.
 Triangulation triangulate(const scene::Mesh& mesh, const scene::Problem& problem);
 
+/// The mesh's own cells in place of Delaunay's, for methods that are defined on gmsh's
+/// triangulation. Throws InputError for cells other than simplices, and for inverted ones.
+Triangulation mesh_triangulation(const scene::Mesh& mesh, const scene::Problem& problem);
+
 /// |t| grad w_k of the linear shape functions of one simplex, and its signed volume |t|
 /// [m^dim]. X: dim+1 vertices; result: dim+1 vectors [m^(dim-1)], area vectors of the opposite
 /// faces over dim. Without division: flat simplices (lattices have them) are as good as any.

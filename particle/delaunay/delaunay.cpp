@@ -8,8 +8,7 @@ namespace concord::particle::delaunay {
 
 DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
                              const Parameters& parameters)
-    : ForceModel(body), m_law(problem.material, problem.dimension),
-      m_material(kernel_material(problem)) {
+    : ForceModel(body, problem) {
   m_pairs = gradient_vectors(body);
   m_contact = parameters.xi_n > 0 || parameters.xi_t > 0;
   const double E = problem.material.E, G = problem.material.mu;
@@ -63,9 +62,10 @@ void DelaunayModel::forces_in(const double* u, const double* v, double* f,
   const std::size_t count = m_bonds.blocks.size();
   executor.for_each(count, [&](std::size_t k) {
     const BondBlock& block = m_bonds.blocks[k];
-    m_bad[k] = with_law(m_material.law, [&](auto law) {
+    m_bad[k] = with_law(m_constitution.kernel().law, [&](auto law) {
       return gradients_and_stress<Dim, decltype(law)::value>(
-          block, m_material.lame, m_inverse_V.data(), u, m_H.data(), m_P.data(), f);
+          block, m_constitution.kernel().constants, m_inverse_V.data(), u, m_H.data(),
+          m_P.data(), f);
     });
     if (m_viscosity) add_viscous_stress<Dim>(block, v);
   });
@@ -99,8 +99,8 @@ double DelaunayModel::viscous_damping_ratio(double omega_max) const {
   // Damping c = (linear/rho0) k^2 against stiffness c_p^2 k^2 on the highest mode: ratio =
   // linear w / (2 rho0 c_p^2).
   if (!m_viscosity) return 0;
-  return 0.5 * m_viscosity->linear * omega_max /
-         (m_material.lame.lambda + 2 * m_material.lame.mu);
+  const LameConstants& lame = m_constitution.kernel().constants.lame;
+  return 0.5 * m_viscosity->linear * omega_max / (lame.lambda + 2 * lame.mu);
 }
 
 void DelaunayModel::compute_gradients(std::span<const double> u, const Executor& executor) {
@@ -119,19 +119,14 @@ void DelaunayModel::compute_gradients(std::span<const double> u, const Executor&
 
 void DelaunayModel::gradients(std::span<const double> u, std::span<Mat3> H) {
   compute_gradients(u, Executor(1));
-  for (Index a = 0; a < m_body.n; ++a) H[a] = m_law.complete(tensor_at(m_H, m_body.dim, a));
+  for (Index a = 0; a < m_body.n; ++a)
+    H[a] = m_constitution.complete(tensor_at(m_H, m_body.dim, a));
 }
 
 Energies DelaunayModel::energies(std::span<const double> u, const Executor& executor) {
   compute_gradients(u, executor);
   Energies e;
-  e.internal = executor.sum(m_body.n, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t a = begin; a < end; ++a) {
-      sum += m_body.V[a] * m_law.energy(tensor_at(m_H, m_body.dim, static_cast<Index>(a)));
-    }
-    return sum;
-  });
+  add_internal_energy(e, executor, [&](Index a) { return tensor_at(m_H, m_body.dim, a); });
   if (m_contact) {
     e.stabilisation = executor.sum(m_pairs.size(), [&](std::size_t begin, std::size_t end) {
       double sum = 0;
@@ -191,7 +186,8 @@ Eigen::SparseMatrix<double> DelaunayModel::tangent(std::span<const double> u) {
   compute_gradients(u, Executor(1));
   if (m_rows.begin.empty()) m_rows = directed_rows(m_body, m_pairs);
   std::vector<Moduli> moduli(m_body.n);
-  for (Index a = 0; a < m_body.n; ++a) moduli[a] = m_law.tangent(tensor_at(m_H, m_body.dim, a));
+  for (Index a = 0; a < m_body.n; ++a)
+    moduli[a] = m_constitution.tangent(a, tensor_at(m_H, m_body.dim, a));
   std::vector<PairTangent> pairs;
   if (m_contact) {
     pairs.reserve(m_pairs.size());

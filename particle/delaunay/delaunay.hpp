@@ -55,8 +55,6 @@ class DelaunayModel final : public ForceModel {
   double contact_energy(std::size_t pair, std::span<const double> u) const;
   PairTangent contact_tangent(std::size_t pair, std::span<const double> u) const;
 
-  scene::ElasticLaw m_law;
-  KernelMaterial m_material;
   std::vector<Bond> m_pairs;        ///< unblocked, for energies and tangent
   std::vector<double> m_stiffness;  ///< A_ab / L_ab of each pair [m]; empty without contact
   double m_normal_factor = 0;       ///< xi_n E

@@ -91,7 +91,7 @@ CONCORD_CLONES void volume_gradients(const BondBlock& block, const double* u, do
 /// H_a and P_a (53) of a block, and f_a = 0. The stress follows as soon as a group of rows is
 /// complete, while H is in cache. Returns the first particle with det F <= 0 or NaN, or -1.
 template <int Dim, StressLaw Law>
-CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameConstants& c,
+CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const StressConstants& c,
                                           const double* inverse_V, const double* u, double* H,
                                           double* P, double* f) {
   const Index rows = block.last - block.first;
@@ -105,7 +105,7 @@ CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const LameCons
       gradient_row<Dim, false>(block.regular, block.first, r + i, u, H);
     const Index a = block.first + r;
     const unsigned bad = stress_of_group<Dim, Law>(
-        c, count, inverse_V + a, H + a * tensor_size<Dim>, P + a * tensor_size<Dim>);
+        c, a, count, inverse_V + a, H + a * tensor_size<Dim>, P + a * tensor_size<Dim>);
     if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
   }
   return bad_particle;

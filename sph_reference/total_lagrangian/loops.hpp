@@ -7,7 +7,7 @@
 
 namespace concord::sph {
 
-using particle::LameConstants;
+using particle::StressConstants;
 using particle::StressLaw;
 
 /// What the loops read and write. Vectors are columns of `stride` doubles a particle. A record
@@ -49,7 +49,7 @@ struct Loops {
   /// and f_a set to the penalty's direct force (TLS.11). Returns the first particle with det F
   /// <= 0 or NaN, or -1.
   Index (*stresses)(const Neighbours& rows, std::size_t first, std::size_t last,
-                    const LameConstants& c, const State& s);
+                    const StressConstants& c, const State& s);
   /// f_a (TLS.7) from the records of all particles.
   void (*forces)(const Neighbours& rows, std::size_t first, std::size_t last,
                  const Viscosity& eta, const State& s);

@@ -24,15 +24,14 @@ Viscosity viscosity(const TlsphOptions& options, const scene::Material& material
 
 TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& problem,
                                        const TlsphOptions& options, const Executor& executor)
-    : ForceModel(body), m_options(options),
+    : ForceModel(body, problem), m_options(options),
       m_kernel(options.kernel, body.dim, options.support * body.h),
-      m_law(problem.material, problem.dimension),
-      m_material(particle::kernel_material(problem)), m_rho0(problem.material.rho0),
+      m_rho0(problem.material.rho0),
       m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
       m_points(body, options.planes, m_kernel.radius()),
       m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E,
                              executor)),
-      m_loops(choose_loops(body.dim, m_material.law, penalty(), viscous())),
+      m_loops(choose_loops(body.dim, m_constitution.kernel().law, penalty(), viscous())),
       m_records(static_cast<std::size_t>(m_points.count()) * 2 * body.dim * body.stride, 0.0),
       m_u(m_points.make_column()), m_v(viscous() ? m_points.make_column() : Column()),
       m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
@@ -53,7 +52,7 @@ void TotalLagrangianSph::forces(std::span<const double> u, std::span<const doubl
   const State s = state(u, v, f, executor);
   if (penalty() == PenaltyForm::potential) update_gradients(s, executor);
   for_ranges(m_body.n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
-    m_bad[k] = m_loops.stresses(m_rows, first, last, m_material.lame, s);
+    m_bad[k] = m_loops.stresses(m_rows, first, last, m_constitution.kernel().constants, s);
   });
   for (const Index a : m_bad) {
     if (a >= 0) throw particle::BadState{"det F", a};
@@ -85,7 +84,7 @@ Mat3 TotalLagrangianSph::plane_gradient(Index a) const {
 void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H) {
   const Executor one_thread(1);
   update_gradients(state(u, {}, {}, one_thread), one_thread);
-  for (Index a = 0; a < m_body.n; ++a) H[a] = m_law.complete(plane_gradient(a));
+  for (Index a = 0; a < m_body.n; ++a) H[a] = m_constitution.complete(plane_gradient(a));
 }
 
 /// l_ab (TLS.8) from the gradients in the records.
@@ -104,13 +103,7 @@ particle::Energies TotalLagrangianSph::energies(std::span<const double> u,
   const State s = state(u, {}, {}, executor);
   update_gradients(s, executor);
   particle::Energies e;
-  e.internal = executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
-    double sum = 0;
-    for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-      sum += m_body.V[a] * m_law.energy(plane_gradient(a));
-    }
-    return sum;
-  });
+  add_internal_energy(e, executor, [&](Index a) { return plane_gradient(a); });
   if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(s.u, executor);
   return e;
 }

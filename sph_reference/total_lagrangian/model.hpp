@@ -56,8 +56,6 @@ class TotalLagrangianSph final : public particle::ForceModel {
 
   TlsphOptions m_options;
   Kernel m_kernel;
-  scene::ElasticLaw m_law;
-  particle::KernelMaterial m_material;
   double m_rho0;
   Viscosity m_viscosity;
   Points m_points;

@@ -53,7 +53,7 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
   update_gradients(state(u, {}, {}, one_thread), one_thread);
   std::vector<particle::Moduli> moduli(m_body.n);
   for (Index a = 0; a < m_body.n; ++a) {
-    moduli[a] = m_law.tangent(plane_gradient(a));
+    moduli[a] = m_constitution.tangent(a, plane_gradient(a));
   }
 
   std::vector<particle::PairTangent> pairs;

@@ -16,7 +16,8 @@ namespace {
 /// Springs of stiffness k_a to the reference position: n independent oscillators.
 class Oscillators final : public ForceModel {
  public:
-  Oscillators(const Body& body, std::vector<double> k) : ForceModel(body), m_k(std::move(k)) {}
+  Oscillators(const Body& body, const scene::Problem& problem, std::vector<double> k)
+      : ForceModel(body, problem), m_k(std::move(k)) {}
   void forces(std::span<const double> u, std::span<const double>, std::span<double> f,
               const Executor&) override {
     for (std::size_t i = 0; i < f.size(); ++i) f[i] = -m_k[i / m_body.stride] * u[i];
@@ -50,7 +51,7 @@ double oscillate(double omega, double damping, double dt, double T) {
   const Body body = make_body(problem, 1.0, 0, 1);
   std::vector<double> k;
   for (const double m : body.m) k.push_back(omega * omega * m);
-  Oscillators model(body, k);
+  Oscillators model(body, problem, k);
   const Executor executor(1);
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, body);
@@ -88,7 +89,7 @@ TEST(StableStep, FindsTheHighestFrequency) {
   const Body body = make_body(problem, 0.25, 0.2, 1);
   std::vector<double> k;
   for (Index a = 0; a < body.n; ++a) k.push_back(body.m[a] * (1 + 99.0 * a / (body.n - 1)));
-  Oscillators model(body, k);
+  Oscillators model(body, problem, k);
   const Executor executor(1);
   const Constraints constraints(problem, body);
   const double omega =

@@ -36,8 +36,8 @@ void compare(const scene::Problem& problem, double magnitude) {
         }
       }
     }
-    const unsigned bad =
-        stress_of_group<Dim, Law>(kernel.lame, count, inverse_V.data(), H.data(), P.data());
+    const unsigned bad = stress_of_group<Dim, Law>(kernel.constants, 0, count, inverse_V.data(),
+                                                   H.data(), P.data());
     EXPECT_EQ(bad, 0u);
     for (int a = 0; a < count; ++a) {
       const Mat3 expected = law.stress(reference[a]);
@@ -80,13 +80,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{scene::MaterialModel::st_venant_kirchhoff, Dimension::plane_stress}));
 
 TEST(StressKernelFailure, MarksTheLanesThatAreInvertedOrNotANumber) {
-  const LameConstants c{1, 1};
+  const StressConstants c{{1, 1}};
   Column H(stress_width * 12, 0.0), P = H;
   const std::vector<double> inverse_V(stress_width, 1.0);
   H[2 * 12] = -1.5;          // particle 2: F_11 = -0.5
   H[5 * 12] = std::nan("");  // particle 5
   const unsigned bad = stress_of_group<3, StressLaw::neo_hookean>(
-      c, stress_width, inverse_V.data(), H.data(), P.data());
+      c, 0, stress_width, inverse_V.data(), H.data(), P.data());
   EXPECT_EQ(bad, (1u << 2) | (1u << 5));
 }
 
