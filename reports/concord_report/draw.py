@@ -8,7 +8,8 @@ matplotlib.use("svg")
 from matplotlib.figure import Figure  # noqa: E402  (after the choice of back end)
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
-from . import draw_labels, draw_triangles, svg  # noqa: E402
+from . import draw_inset, draw_labels, draw_map, draw_triangles, svg  # noqa: E402
+from .balance import SIGN  # noqa: E402
 from .digits import SUPERSCRIPTS, exact, pretty, ticks  # noqa: E402
 from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
 
@@ -16,7 +17,8 @@ INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"
 SIZE = 13
 HEIGHT = 380
 BOTTOM, TOP = 50, 12
-AREA = 360  # width of the axes beside labels; all in CSS pixels
+AREA, WIDE = 360, 520  # width of the axes beside labels; all in CSS pixels
+LINE = 1.32  # height of a label's line, in font sizes
 PLAIN = 500  # width of a plot without labels
 
 matplotlib.rcParams.update({
@@ -29,26 +31,76 @@ matplotlib.rcParams.update({
 
 def draw(spec):
     """The specification as an <svg> element."""
+    if spec.get("map"):
+        return draw_map.draw(spec, SIZE)
+    if spec.get("zero_apart"):
+        spec = _with_zero(spec)
     curves = spec["curves"]
     labelled = spec["labelled"]
     right = 22 + max(_width(_end_label(c)) for c in curves) if labelled else 14
-    figure = Figure(figsize=(PLAIN / 72, HEIGHT / 72), dpi=72)
+    height = max(HEIGHT, BOTTOM + TOP + 16 + len(curves) * SIZE * LINE if labelled else 0)
+    figure = Figure(figsize=(PLAIN / 72, height / 72), dpi=72)
     axes = figure.add_axes([0, 0, 1, 1])
     _frame(axes, spec, curves)
     left = 18 + _tick_width(axes)
-    width = left + AREA + right if labelled else PLAIN
-    figure.set_size_inches(width / 72, HEIGHT / 72)
-    axes.set_position([left / width, BOTTOM / HEIGHT, (width - left - right) / width,
-                       (HEIGHT - BOTTOM - TOP - 16) / HEIGHT])
+    width = left + (WIDE if spec.get("wide") else AREA) + right if labelled else PLAIN
+    figure.set_size_inches(width / 72, height / 72)
+    axes.set_position([left / width, BOTTOM / height, (width - left - right) / width,
+                       (height - BOTTOM - TOP - 16) / height])
     # the y label lies flat above the axis: no one reads sideways
-    figure.text(4 / width, 1 - (TOP + 5) / HEIGHT, spec["ylabel"], ha="left", va="bottom", color=INK)
-    for number, curve in enumerate(curves):
-        _line(axes, curve, number, len(curve["x"]) > 40)
+    figure.text(4 / width, 1 - (TOP + 5) / height, spec["ylabel"], ha="left", va="bottom", color=INK)
+    lines(axes, curves)
+    if spec.get("zero_apart"):
+        _zero_tick(axes, spec["zero_at"])
     if spec["triangles"]:
         draw_triangles.draw(axes, curves, spec["triangles"], MUTED, GRID)
+    if spec.get("inset"):
+        draw_inset.draw(axes, curves, spec["inset"], lines)
     if labelled:
         _labels(axes, curves)
     return svg.fragment(figure, spec["ident"], spec["alt"])
+
+
+def lines(axes, curves):
+    """All curves; the finer of two levels lies above."""
+    for number, curve in enumerate(curves):
+        if curve.get("baseline"):
+            _baseline(axes, curve, number)
+        else:
+            _line(axes, curve, number, _long(curve))
+
+
+def _long(curve):
+    """True for a curve that is drawn without markers."""
+    return len(curve["x"]) > 40 or "dash" in curve
+
+
+def _with_zero(spec):
+    """Puts the points at 0 a little left of the smallest positive value, apart from their curve."""
+    xs = sorted({x for c in spec["curves"] for x in c["x"] if x > 0})
+    at = xs[0] / max((xs[-1] / xs[0]) ** 0.13, 1.3)
+    moved = [{**c, "x": [x or at for x in c["x"]], "apart": any(x == 0 for x in c["x"])}
+             for c in spec["curves"]]
+    return {**spec, "curves": moved, "zero_at": at}
+
+
+def _zero_tick(axes, at):
+    """The label 0 below the points that were put there, and a break in the axis."""
+    low, high = axes.get_xlim()
+    decades = [10.0 ** k for k in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)]
+    places = [at] + [d for d in decades if at < d <= high]
+    axes.xaxis.set_major_locator(FixedLocator(places))
+    axes.xaxis.set_minor_locator(FixedLocator(
+        [k * d for d in decades for k in range(2, 10) if k * d > at * 1.6]))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda v, _: "0" if v == at else exact(v, 2)))
+    first = min(x for line in axes.get_lines() for x in line.get_xdata() if x > at)
+    middle = axes.transAxes.inverted().transform(axes.transData.transform(
+        (math.sqrt(at * first), axes.get_ylim()[0])))[0]
+    box = {"transform": axes.transAxes, "clip_on": False, "zorder": 6}
+    axes.plot([middle - 0.008, middle + 0.008], [0, 0], color=PAPER, linewidth=3, **box)
+    for shift in (-0.008, 0.008):
+        axes.plot([middle + shift - 0.006, middle + shift + 0.006], [-0.018, 0.018], color=MUTED,
+                  linewidth=0.9, **box)
 
 
 def _width(words):
@@ -65,8 +117,10 @@ def _tick_width(axes):
 
 
 def _end_label(curve):
+    """A curve without markers carries here the sign that its run's energy balance does not close."""
     slope = curve.get("slope")
-    return curve["label"] + (f" ({pretty(slope)})" if slope is not None else "")
+    sign = f" {SIGN}" if any(curve.get("broken") or []) and (_long(curve) or curve.get("baseline")) else ""
+    return curve["label"] + (f" ({pretty(slope)})" if slope is not None else "") + sign
 
 
 def _frame(axes, spec, curves):
@@ -130,22 +184,43 @@ def _linear(axes, one, values, is_x, levels):
     one.set_major_formatter(FuncFormatter(lambda v, _: exact(float(f"{v:.10g}"), digits)))
 
 
+def _dashes(curve, width):
+    style = tuple(float(v) / width for v in dash(curve.get("dash", curve["style"])).split())
+    return (0, style) if style else "-"
+
+
 def _line(axes, curve, number, long):
-    hue, style = colour(curve["method"]), curve["style"]
-    dashes = tuple(float(v) for v in dash(style).split())
-    rank = curve.get("rank", 0)
-    line, = axes.plot(curve["x"], curve["y"], color=hue, linewidth=1.7 if rank == 0 else 1.0,
-                      alpha=1 if rank == 0 else max(0.3, 0.7 - 0.15 * rank),
-                      marker=None if long else marker(style), markersize=6,
-                      markerfacecolor=PAPER if hollow(style) else hue, markeredgecolor=hue,
-                      markeredgewidth=1.4, zorder=3, clip_on=long)
-    if dashes:
-        line.set_linestyle((0, tuple(d / 1.7 for d in dashes)))
+    hue, style, rank = colour(curve["method"]), curve["style"], curve.get("rank", 0)
+    width = 1.7 if rank == 0 else 1.0
+    x, y, apart = curve["x"], curve["y"], curve.get("apart")
+    line, = axes.plot(x[1:] if apart else x, y[1:] if apart else y, color=hue,
+                      linewidth=width, linestyle=_dashes(curve, 1.7),
+                      alpha=1 if rank == 0 else max(0.3, 0.7 - 0.15 * rank), zorder=3 - 0.1 * rank, clip_on=long)
     line.set_gid(f"curve:{curve['case']}:{number}")
+    broken = curve.get("broken") or [False] * len(x)
+    for bad in () if long else (False, True):
+        places = [(a, b) for a, b, sign in zip(x, y, broken) if bool(sign) == bad]
+        if places:
+            marks = axes.plot(*zip(*places), linestyle="none", marker=marker(style), markersize=7 if bad else 6,
+                              markerfacecolor=PAPER if bad or hollow(style) else hue, markeredgecolor=hue,
+                              markeredgewidth=1.4, zorder=3, clip_on=False)
+            crosses = axes.plot(*zip(*places), linestyle="none", marker="x", markersize=9, markeredgecolor=hue,
+                                markeredgewidth=1.2, zorder=3.1, clip_on=False) if bad else []
+            for k, artist in enumerate(marks + crosses):
+                artist.set_gid(f"curve:{curve['case']}:{number}m{int(bad)}{k}")
     if curve["low"] and curve["low"] != curve["high"]:
-        bars = axes.vlines(curve["x"], curve["low"], curve["high"], color=hue, linewidth=3.4,
-                           alpha=0.33, zorder=2)
+        bars = axes.vlines(x, curve["low"], curve["high"], color=hue, linewidth=3.4, alpha=0.33, zorder=2)
         bars.set_gid(f"curve:{curve['case']}:{number}s")
+
+
+def _baseline(axes, curve, number):
+    """A value that has nothing to do with the abscissa: a line across, a band for its spread."""
+    hue = colour(curve["method"])
+    line = axes.axhline(curve["y"][0], color=hue, linewidth=1.7, linestyle=_dashes(curve, 1.7), zorder=2.5)
+    line.set_gid(f"curve:{curve['case']}:{number}")
+    if curve["low"][0] != curve["high"][0]:
+        band = axes.axhspan(curve["low"][0], curve["high"][0], color=hue, alpha=0.16, linewidth=0, zorder=1.5)
+        band.set_gid(f"curve:{curve['case']}:{number}s")
 
 
 def _labels(axes, curves):
@@ -155,7 +230,7 @@ def _labels(axes, curves):
         last = max(range(len(curve["x"])), key=lambda i: curve["x"][i])
         ends.append(axes.transData.transform((curve["x"][last], curve["y"][last])))
     box = axes.bbox
-    places = draw_labels.spread([e[1] for e in ends], SIZE * 1.32, box.y0 + 6, box.y1 + 8)
+    places = draw_labels.spread([e[1] for e in ends], SIZE * LINE, box.y0 + 6, box.y1 + 8)
     edge = box.x1 + 12
     back = axes.figure.transFigure.inverted()
     for number, (curve, end, y) in enumerate(zip(curves, ends, places)):

@@ -79,27 +79,39 @@ def is_particles(frame):
     return len(frame["types"]) == 0 or bool((frame["types"] == POINT_CELL).all())
 
 
-def facts(path, color, scale):
+def facts(path, color, scale, crop=None):
     """What the choice of colours and view needs: range, bounds, flatness, fields, or the reason
-    why there is no picture."""
+    why there is no picture. `crop` {x: [low, high], y: [low, high]} [m] limits range and bounds to what
+    is seen of a plane body."""
     import numpy as np
+
+    from . import plane_cells
     frame = read(path)
     data = values(frame, color)
     if data is None:
         return {"missing": f"the frame has no point field '{color}'; it has: "
                            + (", ".join(sorted(frame["fields"])) or "none")}
-    good = data[np.isfinite(data)]
     positions, _ = deformed(frame, scale)
-    good_positions = positions[np.isfinite(positions).all(axis=1)]
-    if not len(good) or not len(good_positions):
+    there = np.isfinite(positions).all(axis=1)
+    for k, along in enumerate("xy"):
+        if crop and crop.get(along):
+            there &= (positions[:, k] >= crop[along][0]) & (positions[:, k] <= crop[along][1])
+    if not there.any():
+        return {"missing": "nothing of the body lies inside the crop" if crop else "no point has a place"}
+    good = data[there & np.isfinite(data)]
+    good_positions = positions[there]
+    if not len(good):
         return {"missing": f"every value of '{color}' is NaN"}
     low, high = good_positions.min(axis=0), good_positions.max(axis=0)
     flat = bool(high[2] - low[2] < 1e-9 * max((high - low).max(), 1e-300))
     def seen(axes):
         along = good_positions @ np.array(axes).T
         return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
-    return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)), "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
-            "particles": is_particles(frame), "nan": int(len(data) - len(good))}
+    particles = is_particles(frame)
+    return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
+            "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
+            "particles": particles, "nan": int(len(data) - np.isfinite(data).sum()),
+            "plane": flat and (particles or plane_cells.supported(frame))}
 
 
 def view_axes(flat):

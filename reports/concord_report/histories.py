@@ -2,7 +2,7 @@
 
 import csv
 
-from .cases import chosen
+from .balance import broken
 from .digits import exact
 from .loading import InputError, number
 
@@ -10,32 +10,35 @@ MOST_CURVES = 12  # beyond that only the finest level of each case is drawn
 MOST_POINTS = 600  # of a drawn curve; see thinned()
 
 
-def read_history(path, column):
-    """(times, values) of one column; InputError for a file that is not a table of numbers.
-    None when the column is not there."""
+def read_history(path, column, against=None):
+    """(x, values) of one column against another, the time when none is named; InputError for a
+    file that is not a table of numbers. None when a column is not there."""
     try:
         with open(path, newline="", encoding="utf-8") as stream:
             lines = csv.reader(stream)
             header = [name.strip() for name in next(lines, [])]
-            time, value = _columns(header, column)
-            if value is None:
+            value = _column(header, column)
+            x = _column(header, against) if against else header.index("t_s") if "t_s" in header else 0
+            if value is None or x is None:
                 return None
             out = []
             for line in lines:
                 if len(line) == len(header):  # a last line cut short is left out
-                    out.append((float(line[time]), float(line[value])))
+                    out.append((float(line[x]), float(line[value])))
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
         raise InputError(f"{path}: not a table of numbers with one header line: {error}") from error
     return [p[0] for p in out], [p[1] for p in out]
 
 
-def _columns(header, column):
-    time = header.index("t_s") if "t_s" in header else 0
+def _column(header, column):
+    """Position of "tip_z" or "tip_z_m" in the header, or None."""
     wanted = column.split(".")[-1]
+    if wanted in header:
+        return header.index(wanted)
     for position, name in enumerate(header):
-        if name == wanted or name.startswith(wanted + "_") and name.count("_") - wanted.count("_") == 1:
-            return time, position
-    return time, None
+        if name.startswith(wanted + "_") and name.count("_") - wanted.count("_") == 1:
+            return position
+    return None
 
 
 def header_of(study):
@@ -66,38 +69,55 @@ def thinned(x, y, most=MOST_POINTS):
     return [x[i] for i in order], [y[i] for i in order]
 
 
-def _series(study, row, column):
+def _read(study, row, column, against=None):
+    """Finite pairs of a run's history, or None."""
     if not row.get("run"):
         return None
     path = study.folder / row["run"] / "history.csv"
     if not path.is_file():
         return None
-    found = read_history(path, column)
+    found = read_history(path, column, against)
     if not found or not found[0]:
         return None
-    finite = [(t, v) for t, v in zip(*found) if number(v) is not None]
+    return [(x, v) for x, v in zip(*found) if number(x) is not None and number(v) is not None]
+
+
+def _series(study, row, column):
+    finite = _read(study, row, column)
     return thinned([p[0] for p in finite], [p[1] for p in finite]) if finite else None
+
+
+def pair(study, row, x, y, most):
+    """(x values, y values) of column y against column x in the order of the history, thinned to
+    about `most` points; a path may turn back (unloading). None when a column is not there."""
+    finite = _read(study, row, y, x)
+    if not finite:
+        return None
+    step = max(1, -(-len(finite) // most))
+    kept = finite[::step] + ([finite[-1]] if (len(finite) - 1) % step else [])
+    return [p[0] for p in kept], [p[1] for p in kept]
 
 
 def history_curves(study, cases, plot):
     """(curves, note): one a case and level, first seed; or (text, "") when there are none."""
     wanted = number(plot.get("resolution"))
-    picked = [(case, level) for case in chosen(cases, plot) for level in case.levels
+    picked = [(case, level) for case in cases for level in case.levels
               if wanted is None or level.resolution == wanted]
     note = ""
     if len(picked) > MOST_CURVES:
-        picked = [(case, case.levels[-1]) for case in chosen(cases, plot)]
+        picked = [(case, case.levels[-1]) for case in cases]
         note = "Finest level of each case."
     curves = []
     for case, level in picked:
         rank = case.levels[::-1].index(level)  # 0 for the finest
-        series = next(filter(None, (_series(study, r, plot["quantity"]) for r in level.rows)), None)
+        row, series = next(((r, s) for r in level.rows if (s := _series(study, r, plot["quantity"]))),
+                           (None, None))
         if series:
             several = len({id(l) for c, l in picked if c is case}) > 1
             label = f"{case.label}, L/{exact(level.resolution)}" if several else case.label
             curves.append({"case": case.index, "method": case.method, "style": case.style,
                            "label": label, "x": series[0], "y": series[1], "rank": rank,
-                           "low": None, "high": None, "slope": None})
+                           "low": None, "high": None, "slope": None, "broken": [broken(row)], "row": row})
     if not curves:
         return f"no history.csv of this report has the column {plot['quantity']}", ""
     return curves, note

@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import claims, histories, outputs, pictures, plots, quantities, tables
+from . import balance, claims, histories, outputs, pictures, plots, quantities, tables
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
 from .palette import css_variables, method_name, swatch
@@ -30,7 +30,7 @@ def _plots(study, cases, store, warnings):
     out = []
     for number, (plot, spec) in enumerate(plots.plot_specs(study, cases)):
         if isinstance(spec, str):
-            what = f"{plot.get('kind')} plot of {plot.get('quantity')}"
+            what = f"{plot.get('kind')} plot of {plot.get('quantity') or plot.get('y')}"
             warnings.append(f"{study.name}: no {what}: {spec}")
             out.append({"kind": "missing", "title": f"No {what}", "why": spec})
             continue
@@ -47,16 +47,28 @@ def _pictures(jobs, name):
         if "missing" in job:
             missing.append({"label": job.get("label") or name, "why": job["missing"]})
             continue
-        case, parts = pictures.caption(job)
-        bar = pictures.bar(job)
-        group = groups.setdefault(job["group"], {"bar": bar, "pictures": []})
-        told = variant_text(job["picture"].get("caption") or "")
-        group["pictures"].append({
+        group = groups.setdefault(job["group"], {"jobs": [], "bar": pictures.bar(job), "whole": job["whole"]})
+        group["jobs"].append(job)
+    return [_group(g) for g in groups.values()], missing
+
+
+def _group(group):
+    """One colour bar and its pictures. What all panels of a figure have in common is said once."""
+    jobs, bar, whole = group["jobs"], group["bar"], group["whole"]
+    told = [pictures.caption(job) for job in jobs]
+    common = [p for p in told[0][1] if all(p in parts for _, parts in told)] if whole and len(jobs) > 1 else []
+    views = []
+    for job, (case, parts) in zip(jobs, told):
+        parts = [p.replace(" ", "\u00a0") if len(p) < 40 else p for p in parts if p not in common]
+        views.append({
             "uri": pictures.data_uri(job), "width": job["width"], "height": job["height"],
-            "caption": told, "parts": [p.replace(" ", "\u00a0") for p in parts], "swatch": swatch(case.method, case.style),
+            "caption": variant_text(job["picture"].get("caption") or ""), "parts": parts,
+            "swatch": swatch(case.method, case.style) if whole is None else "",
             "alt": f"{case.label}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
                    f"{bar['unit']}".strip()})
-    return list(groups.values()), missing
+    return {"bar": bar, "pictures": views, "title": variant_text((whole or {}).get("caption") or ""),
+            "common": [*common, pictures.extent(jobs[0])] if whole else [],
+            "columns": pictures.columns(whole, len(jobs)) if whole else 0}
 
 
 def _tables(study, cases):
@@ -88,7 +100,7 @@ def _study_view(study, cases, jobs, store, warnings):
 
 
 def _failed_runs(study, cases):
-    """Remarks: a study that was interrupted, a run that did not reach its end."""
+    """Remarks: a study that was interrupted, a run that did not reach its end or does not balance."""
     out = []
     if study.data.get("interrupted"):
         out.append(f"{study.name}: the study was interrupted; this is what it had by then")
@@ -99,6 +111,10 @@ def _failed_runs(study, cases):
                     seed = f", seed {row['seed']}" if row.get("seed") is not None else ""
                     out.append(f"{study.name}: {case.label} at resolution {level.resolution:g}{seed} "
                                f"failed: {row['error']}")
+    open_runs = sum(map(balance.broken, study.rows))
+    if open_runs:
+        out.append(f"{study.name}: {balance.WORDS} in {open_runs} of "
+                   f"{len(study.rows)} runs, marked {balance.SIGN}")
     return out
 
 

@@ -1,5 +1,5 @@
 """Field pictures of a study: which frame, which colours, which scale. Drawn by render.py in a
-process of its own (VTK needs an X display) and cached by content."""
+process of its own (VTK needs an X display), plane bodies by matplotlib, and cached by content."""
 
 import base64
 import json
@@ -11,44 +11,69 @@ import tempfile
 from pathlib import Path
 
 from . import cache, frames
+from .balance import SIGN, WORDS, broken
 from .cases import chosen
 from .digits import engineering, exact, pretty, ticks
+from .kinds import is_static
 from .loading import number
 from .palette import RED_BLUE, VIRIDIS
 from .quantities import field_name
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
-CODE = ("render", "render_vtk", "render_scatter", "frames", "palette")
+CODE = ("render", "render_vtk", "render_plane", "render_scatter", "plane_cells", "frames", "palette")
+LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 
 
-def _run_of(study, cases, picture):
-    """(case, row, time, frame path) of the first run that the picture's selection has frames of;
+def entries(study):
+    """The study's pictures one by one: [(entry, None)], and for each panel of a [[picture]] with panels
+    (entry with the panel's keys over the picture's, the picture as it stands)."""
+    out = []
+    for picture in study.listed("pictures"):
+        panels = picture.get("panels")
+        if not panels:
+            out.append((picture, None))
+            continue
+        shared = {k: v for k, v in picture.items() if k not in ("panels", "caption")}
+        out += [({**shared, **panel}, picture) for panel in panels]
+    return out
+
+
+def _run_of(study, cases, picture, color):
+    """(case, row, time, path, field) of the first run that the picture's selection has frames of;
     or a text: why not."""
     wanted = number(picture.get("resolution"))
     for case in chosen(cases, picture):
-        levels = [l for l in case.levels if wanted is None or l.resolution == wanted]
+        levels = [l for l in case.levels if wanted is None or abs(l.resolution - wanted) <= 1e-4 * wanted]
         for level in reversed(levels):
             for row in level.rows:
-                found = frames.series(study.folder / row["run"]) if row.get("run") else []
-                if found:
-                    return (case, row, *frames.at_time(found, picture.get("time")))
+                folder = study.folder / row["run"] if row.get("run") else None
+                if folder is None:
+                    continue
+                if picture.get("difference"):
+                    path = folder / "difference.hdf"
+                    named = color.endswith(("_difference", "_reference"))
+                    if path.is_file():
+                        return case, row, None, path, color if named else f"{color}_difference"
+                elif found := frames.series(folder):
+                    return (case, row, *frames.at_time(found, picture.get("time")), color)
     if not chosen(cases, picture):
         return "this report has no such run"
-    return "the run left no frames"
+    return "the run left no difference.hdf" if picture.get("difference") else "the run left no frames"
 
 
 def prepare(study, cases, store, warnings):
     """The study's pictures as jobs: {picture, case, caption, ... , or "missing": reason}."""
     jobs = []
-    for picture in study.listed("pictures"):
+    for picture, whole in entries(study):
         color = picture.get("color") or "displacement"
-        job = {"picture": picture, "color": color, "scale": number(picture.get("scale_displacement")) or 1.0}
-        found = _run_of(study, cases, picture)
+        job = {"picture": picture, "color": color, "scale": number(picture.get("scale_displacement")) or 1.0,
+               "whole": whole, "crop": picture.get("crop")}
+        found = _run_of(study, cases, picture, color)
         if isinstance(found, str):
             job["missing"] = found
         else:
-            case, row, job["time"], path = found
-            job.update(case=case, h=number(row.get("h")), scene=case.scene, path=str(path),
+            case, row, job["time"], path, job["color"] = found
+            job.update(case=case, h=number(row.get("h")), scene=case.scene, path=str(path), row=row,
                        resolution=number(row.get("resolution")), file=cache.file_digest(path))
             job.update(_facts(job, path, store))
         if "missing" in job:
@@ -61,36 +86,61 @@ def prepare(study, cases, store, warnings):
 
 
 def _facts(job, path, store):
-    key = cache.digest(job["file"], job["color"], job["scale"], cache.source_digest("frames"))
+    key = cache.digest(job["file"], job["color"], job["scale"], job["crop"],
+                       cache.source_digest("frames", "plane_cells"))
     known = store.get(key, ".json")
     if known is None:
-        known = json.dumps(frames.facts(path, job["color"], job["scale"])).encode()
+        known = json.dumps(frames.facts(path, job["color"], job["scale"], job["crop"])).encode()
         store.put(key, ".json", known)
     return json.loads(known)
 
 
+def _together(job, other):
+    """True when two pictures share their view: panels of one picture, or the same part of a scene."""
+    if job["whole"] is not None or other["whole"] is not None:
+        return job["whole"] is other["whole"]
+    return job["scene"] == other["scene"] and job["crop"] == other["crop"]
+
+
 def _share_scales(jobs):
-    """Gives every job its group, colour limits and view: pictures of one scene share the view, and
-    of one field the colours as well, unless a common scale would leave some of them in one hue."""
+    """Gives every job its group, colour limits and view: panels of one picture share both; other
+    pictures of one scene share the view, and of one field the colours as well, unless a common
+    scale would leave some of them in one hue."""
     for job in jobs:
-        alike = [j for j in jobs if j["scene"] == job["scene"]]
+        alike = [j for j in jobs if _together(job, j)]
         flat = all(j["flat"] for j in alike)
         room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
         seen = [j["seen_flat" if flat else "seen"] for j in alike]
         job["view"] = {"flat": flat, "low": [min(s[0][k] for s in seen) - room for k in range(3)],
                        "high": [max(s[1][k] for s in seen) + room for k in range(3)]}
-        same = [j for j in alike if j["color"] == job["color"]]
+        for k, along in enumerate("xy"):
+            if flat and job["crop"] and job["crop"].get(along):
+                job["view"]["low"][k], job["view"]["high"][k] = map(float, job["crop"][along])
+        job["plane"] = flat and all(j["plane"] for j in alike)
+        wanted = job["picture"].get("range")
+        wanted = [float(v) for v in wanted] if isinstance(wanted, list) else wanted
+        same = [j for j in alike if j["color"] == job["color"] and j["picture"].get("range") == job["picture"].get("range")]
         sizes = [max(map(abs, j["range"])) for j in same]
-        shared = min(sizes) > 0 and max(sizes) / min(sizes) <= SHARED_UP_TO
+        shared = wanted is not None or job["whole"] is not None or \
+            (min(sizes) > 0 and max(sizes) / min(sizes) <= SHARED_UP_TO)
         job["shared"] = shared and len(same) > 1
-        job["group"] = (job["scene"], job["color"], "" if shared else jobs.index(job))
+        job["group"] = (id(job["whole"]), job["scene"], job["color"], str(wanted), str(job["crop"]),
+                        "" if shared else jobs.index(job))
         ranges = [j["range"] for j in (same if shared else [job])]
-        job["limits"], job["diverging"] = _limits(min(r[0] for r in ranges), max(r[1] for r in ranges))
+        span = min(r[0] for r in ranges), max(r[1] for r in ranges)
+        job["limits"], job["diverging"] = _limits(*span, wanted, job["color"].endswith("_difference"))
+        job["beyond"] = [span[0] < job["limits"][0], span[1] > job["limits"][1]]
+        job["long"] = LONG if len(same) <= 2 else LONG * 3 // 5 if len(same) <= 6 else LONG // 2
 
 
-def _limits(low, high):
-    """Colour limits: symmetric about 0 when the field changes sign, from 0 when it nearly touches
-    it, else its own range."""
+def _limits(low, high, wanted=None, difference=False):
+    """Colour limits: what the author wants; symmetric about 0 for a difference and when the field
+    changes sign; from 0 when it nearly touches it; else its own range."""
+    if difference:
+        size = max(map(abs, wanted if isinstance(wanted, list) else (low, high))) or 1.0
+        return [-size, size], True
+    if isinstance(wanted, list):
+        return wanted, wanted[0] == -wanted[1]
     if low < 0 < high and min(-low, high) > 0.05 * max(-low, high):
         size = max(-low, high)
         return [-size, size], True
@@ -103,8 +153,9 @@ def _limits(low, high):
 
 def _render_job(job):
     stops = RED_BLUE if job["diverging"] else VIRIDIS
+    more = {"long": job["long"]} if job["plane"] else {}
     return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat")} \
-        | {"stops": stops}
+        | {"stops": stops, **more}
 
 
 def _key(job):
@@ -135,28 +186,38 @@ def render_missing(jobs, store, warnings):
 
 def _finished(data):
     """True for a picture that need not be drawn again; a scatter plot only stands in for one."""
-    return data is not None and json.loads(data.partition(b"\n")[0])["how"] == "vtk"
+    return data is not None and json.loads(data.partition(b"\n")[0])["how"] in ("vtk", "plane")
 
 
 def _render(wanted, store, warnings):
-    """Under xvfb-run with VTK; with matplotlib alone where that is not to be had."""
+    """Plane bodies with matplotlib, others with VTK under xvfb-run; with matplotlib alone, as a
+    scatter plot, where that is not to be had."""
+    plane = {k: j for k, j in wanted.items() if "long" in j}
+    solid = {k: j for k, j in wanted.items() if "long" not in j}
+    if plane:
+        _attempts(plane, [("plane", [])], store, warnings)
+    if solid:
+        ways = [("scatter", [])]
+        if shutil.which("xvfb-run"):
+            ways.insert(0, ("vtk", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24"]))
+        else:
+            warnings.append("xvfb-run is missing: field pictures are plain scatter plots")
+        _attempts(solid, ways, store, warnings)
+
+
+def _attempts(wanted, ways, store, warnings):
     script = Path(__file__).with_name("render.py")
     with tempfile.TemporaryDirectory() as folder:
         todo = Path(folder) / "jobs.json"
         todo.write_text(json.dumps([{**j, "out": str(store.path(k, ".pic"))} for k, j in wanted.items()]))
-        python = [sys.executable, str(script), str(todo)]
-        attempts = [python + ["scatter"]]
-        if shutil.which("xvfb-run"):
-            attempts.insert(0, ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24", *python, "vtk"])
-        else:
-            warnings.append("xvfb-run is missing: field pictures are plain scatter plots")
-        for attempt in attempts:
+        for way, before in ways:
             env = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "LIBGL_ALWAYS_SOFTWARE": "1"}
-            done = subprocess.run(attempt, capture_output=True, text=True, env=env, check=False)
+            done = subprocess.run([*before, sys.executable, str(script), str(todo), way], capture_output=True,
+                                  text=True, env=env, check=False)
             if done.returncode == 0:
                 return
             last = (done.stderr or done.stdout).strip().splitlines() or [f"status {done.returncode}"]
-            warnings.append(f"pictures with {attempt[-1]} failed: {last[-1]}")
+            warnings.append(f"pictures with {way} failed: {last[-1]}")
 
 
 def data_uri(job):
@@ -164,19 +225,25 @@ def data_uri(job):
 
 
 def caption(job):
-    """The caption's factual half: method, spacing, time, exaggeration."""
+    """The caption's factual half: method, spacing, time, exaggeration, how large the field is."""
     case, parts = job["case"], [job["case"].label]
     if job["h"]:
-        parts.append(f"h = {exact(job['h'])} m")
+        parts.append(f"h = {exact(job['h'])} m" if job["h"] >= 0.01 else f"h = {exact(job['h'] * 1e3, 3)} mm")
     if job["time"]:
-        factor, unit = engineering(job["time"], "s")
-        parts.append(f"t = {exact(job['time'] * factor)} {unit}")
+        factor, unit = (1, "") if is_static(job["row"]) else engineering(job["time"], "s")
+        parts.append(f"t = {exact(job['time'] * factor)} {unit}".strip())
     if job["scale"] != 1:
         parts.append(f"displacement ×{exact(job['scale'])}")
+    if job["whole"] is not None:
+        factor, unit = engineering(max(map(abs, job["limits"])), field_name(job["color"])[1])
+        low, high = (pretty(v * factor) for v in job["range"])
+        parts.append(f"{low} to {high} {unit}".strip())
     if job.get("how") == "scatter":
         parts.append("plain scatter plot, because VTK or xvfb is not installed")
     if job["nan"]:
         parts.append(f"{job['nan']} points without a value in grey")
+    if broken(job["row"]):
+        parts.append(f"{SIGN} {WORDS}")
     return case, parts
 
 
@@ -196,4 +263,24 @@ def bar(job):
                       exact(float(f"{value:.6g}") + 0.0)))
     return {"name": name, "unit": unit or scale_text, "marks": marks,
             "stops": RED_BLUE if job["diverging"] else VIRIDIS,
-            "low": pretty(low * factor), "high": pretty(high * factor)}
+            "low": pretty(low * factor), "high": pretty(high * factor), "beyond": job["beyond"]}
+
+
+def extent(job):
+    """How large a part of space each panel shows."""
+    if not job["plane"]:
+        return ""
+    wide, high = (job["view"]["high"][k] - job["view"]["low"][k] for k in (0, 1))
+    factor, unit = (1e3, "mm") if max(wide, high) < 1 else (1, "m")
+    return f"each picture {exact(wide * factor, 3)} {unit} × {exact(high * factor, 3)} {unit}"
+
+
+def columns(whole, count):
+    """How many panels stand side by side: the author's number; one row up to four, else whole rows of
+    three or four where there are."""
+    wanted = whole.get("columns")
+    if isinstance(wanted, int) and wanted > 0:
+        return min(wanted, count)
+    if count <= 4:
+        return count
+    return next((n for n in (3, 4, 5) if count % n == 0), 4)

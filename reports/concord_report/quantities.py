@@ -29,6 +29,8 @@ NAMES = {  # name: (text, unit); norms.hpp defines the errors
     "t_s": ("time", "s"),
     "perturb": ("perturbation of the particles", "h"),
     "dt": ("time step", "s"),
+    "plastic_strain_difference": ("relative L2 difference of equivalent plastic strain", ""),
+    "kirchhoff_mises_difference": ("relative L2 difference of equivalent Kirchhoff stress", ""),
 }
 
 FIELDS = {  # point fields of the frames: (text, unit)
@@ -38,6 +40,7 @@ FIELDS = {  # point fields of the frames: (text, unit)
     "von_mises": ("von Mises stress", "Pa"),
     "pressure": ("pressure", "Pa"),
     "plastic_strain": ("equivalent plastic strain", ""),
+    "kirchhoff_mises": ("equivalent Kirchhoff stress", "Pa"),
     "energy_density": ("strain energy density", "J/m³"),
     "damage": ("damage", ""),
 }
@@ -78,6 +81,10 @@ def axis(path):
 
 def field_name(color):
     """(text, unit) of a point field; "displacement_z" is the component of "displacement"."""
+    for end, words in (("_difference", "difference in {}"), ("_reference", "{} of the reference")):
+        if color.endswith(end):
+            name, unit = field_name(color.removesuffix(end))
+            return words.format(name), unit
     base, component = split_component(color)
     name, unit = FIELDS.get(base, (_words(base), ""))
     return (f"{name}, {'xyz'[component]}" if component is not None else name), unit

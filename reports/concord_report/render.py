@@ -1,4 +1,4 @@
-"""Draws pictures in a process of its own: render.py JOBS.json vtk|scatter. A job names a frame,
+"""Draws pictures in a process of its own: render.py JOBS.json vtk|plane|scatter. A job names a frame,
 its colours and the view; the result is one line of JSON and the image's bytes."""
 
 import io
@@ -31,6 +31,8 @@ def main():
     jobs = json.loads(Path(sys.argv[1]).read_text())
     if sys.argv[2] == "vtk":
         from concord_report.render_vtk import draw
+    elif sys.argv[2] == "plane":
+        from concord_report.render_plane import draw
     else:
         from concord_report.render_scatter import draw
     for job in jobs:

@@ -1,10 +1,15 @@
 """The tables of a study, as plain data for the template: captions, columns, cells that line up."""
 
+from .balance import NOTE, any_broken, how_many, state
 from .cases import fit_of, local_orders
 from .digits import DASH, between, column, exact_column, takes_powers
+from .kinds import is_static
 from .loading import dig, number
 from .palette import swatch
 from .quantities import axis, name_and_unit
+
+
+FOLD_FROM = 40  # lines: a longer table is folded up
 
 
 def text_column(label, texts, head=False, marks=None):
@@ -12,6 +17,15 @@ def text_column(label, texts, head=False, marks=None):
     marks = marks or [""] * len(texts)
     cells = [{"text": t or DASH, "value": t or "", "mark": m} for t, m in zip(texts, marks)]
     return {"label": label, "kind": "head" if head else "text", "cells": cells}
+
+
+def balance_column(groups, word=how_many):
+    """A badge where the energy balance of a line's runs does not close; None when all close, or
+    none has one. `word` makes the text of a line's rows."""
+    if not any(map(any_broken, groups)):
+        return None
+    cells = [{"text": word(rows), "value": word(rows), "mark": "", "badge": any_broken(rows)} for rows in groups]
+    return {"label": "energy balance", "kind": "text", "cells": cells}
 
 
 def number_column(label, values, digits=3, texts=None):
@@ -29,7 +43,9 @@ def table(caption, columns, note=""):
     rows = list(zip(*[c["cells"] for c in columns]))
     starts = [i == 0 or row[0]["text"] != rows[i - 1][0]["text"] for i, row in enumerate(rows)]
     grouped = sum(starts) < len(rows)
-    return {"caption": caption, "columns": columns, "note": note, "rows": rows,
+    if any(cell.get("badge") for row in rows for cell in row):
+        note = f"{note} {NOTE}".strip()
+    return {"caption": caption, "columns": columns, "note": note, "rows": rows, "fold": len(rows) > FOLD_FROM,
             "starts": [grouped and s for s in starts]}
 
 
@@ -82,7 +98,8 @@ def convergence_table(study, cases, path):
          number_column("fitted order", [f and f.get("slope") for f in fits], 3),
          number_column("R²", [f and f.get("r2") for f in fits], 4),
          number_column("run time [s]", [l.mean("wall_s") for _, l in pairs], 3),
-         number_column("ns a particle a step", [l.mean("ns_per_particle_step") for _, l in pairs], 3)],
+         number_column("ns a particle a step", [l.mean("ns_per_particle_step") for _, l in pairs], 3),
+         balance_column([l.rows for _, l in pairs])],
         "Errors are means over the seeds. The local order is taken against the line before; the "
         "fitted order stands on the finest line of its case."
         if seeds != [1] else
@@ -117,6 +134,7 @@ def results_table(study, cases):
         columns.append(number_column(axis(path), [l.mean(path) for _, l in pairs]))
         if any(s and s[0] != s[1] for s in spreads):
             columns.append(number_column("largest", [max(l.values(path), default=None) for _, l in pairs]))
+    columns.append(balance_column([l.rows for _, l in pairs]))
     return table("Results", columns, "Means over the seeds, and the largest of them.")
 
 
@@ -135,6 +153,7 @@ def invariants_table(cases):
     for name in names:
         worst = [max(map(abs, l.values(f"invariants.{name}")), default=None) for _, l in pairs]
         columns.append(number_column(axis(name), worst, 2))
+    columns.append(balance_column([l.rows for _, l in pairs]))
     return table("Conservation on the finest level", columns, "Largest magnitude over the seeds.")
 
 
@@ -173,9 +192,10 @@ def runs_table(cases):
          number_column("resolution", [r.get("resolution") for _, r in rows],
                        texts=exact_column([r.get("resolution") for _, r in rows])), numbers("seed", "seed"), numbers("particles", "particles"),
          numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
-         numbers("end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
+         numbers("end t" if all(is_static(r) for _, r in rows) else "end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
          numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
          numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
+         balance_column([[r] for _, r in rows], lambda one: state(one[0])),
          text_column("remark", [str(r.get("error") or "") for _, r in rows])
          if any(r.get("error") for _, r in rows) else None])
 

@@ -10,6 +10,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+import fixture_bar
+
 SIGN = "FIXTURE DATA made by tests/browser/fixture.py, not a result."
 MACHINE = {"cpu": "Fixture CPU, 2 cores", "simd": "AVX2", "threads": 1}
 BUILD = {"version": "0.0.0", "commit": "fixture", "compiler": "none", "flags": "-O3 -fixture"}
@@ -210,9 +212,15 @@ def membrane(folder):
                           "color": "pressure", "scale_displacement": 1}]}
 
 
+def tensile_bar(folder):
+    """A static plastic bar: curves, sweeps with baselines, a map, panels, differences, open balances."""
+    return fixture_bar.bar(folder, row, claim, frame, series)
+
+
 def write(folder):
     """The fixture's studies below `folder`."""
-    for name, make in (("cube", cube), ("patch", patch), ("beam", beam), ("membrane", membrane)):
+    for name, make in (("cube", cube), ("patch", patch), ("beam", beam), ("membrane", membrane),
+                       ("bar", tensile_bar)):
         here = Path(folder) / f"fixture_{name}"
         here.mkdir(parents=True)
         data = {"name": here.name, "question": SIGN, "source": "tests/browser/fixture.py", "mode": "quick",

@@ -1,0 +1,80 @@
+"""Plots of one history column against another: one line a run, such as a stress-strain curve."""
+
+from .balance import broken
+from .cases import chosen
+from .digits import exact, grouped, pretty
+from .histories import pair
+from .kinds import capital, kind, scaled
+from .loading import number
+from .quantities import name_and_unit
+
+FINE = 240  # points of a drawn curve
+
+
+@kind("curve")
+def curve(study, cases, plot):
+    columns = [plot.get("x"), plot.get("y") or plot.get("quantity")]
+    if None in columns:
+        return "the plot names no columns x and y"
+    wanted = plot.get("resolutions") or ([plot["resolution"]] if plot.get("resolution") else [])
+    lines, styles = [], {}
+    for case in chosen(cases, plot):
+        levels = [l for l in case.levels if not wanted or any(_near(l.resolution, w) for w in wanted)]
+        for rank, level in enumerate(reversed(levels)):  # 0 for the finest
+            found = next(filter(None, (_line(study, row, columns) for row in level.rows)), None)
+            if not found:
+                continue
+            x, y, row = found
+            style = styles.setdefault((case.method, case.variant, case.scene), len(styles))
+            lines.append({"case": -1 - len(lines), "method": case.method, "dash": style, "style": style,
+                          "label": _label(case, level, row, len(levels) > 1), "x": x, "y": y, "rank": rank,
+                          "low": None, "high": None, "slope": None, "broken": [broken(row)]})
+    if not lines:
+        return f"no history.csv of this report has the columns {columns[0]} and {columns[1]}"
+    lines, labels = _in_units(lines, plot, columns)
+    ends = "; ".join(f"{c['label']} ends at {pretty(c['x'][-1])}, {pretty(c['y'][-1])}" for c in lines)
+    inset = plot.get("inset")
+    return {"scales": ["linear", "linear"], "xlabel": labels[0], "ylabel": labels[1], "curves": lines,
+            "title": plot.get("title") or f"{capital(_name(labels[1]))} against {_name(labels[0])}",
+            "note": "Darker lines are finer." if any(c["rank"] for c in lines) else "",
+            "inset": [inset["x"], inset["y"]] if inset else None, "wide": True,
+            "triangles": [], "alt": f"Plot of {labels[1]} against {labels[0]}. {ends}."}
+
+
+def _near(a, b):
+    """Resolutions are written with few digits: 72.7273 is 40/0.55."""
+    return number(b) is not None and abs(a - b) <= 1e-4 * abs(b)
+
+
+def _line(study, row, columns):
+    return (*found, row) if (found := pair(study, row, *columns, FINE)) else None
+
+
+def _label(case, level, row, several):
+    """The case and, when there are several levels, how large the run was."""
+    if not several:
+        return case.label
+    if case.method == "fem" and row.get("unknowns"):
+        return f"{case.label}, {grouped(row['unknowns'])} unknowns"
+    if row.get("particles"):
+        return f"{case.label}, {grouped(row['particles'])} particles"
+    return f"{case.label}, L/{exact(level.resolution)}"
+
+
+def _in_units(lines, plot, columns):
+    """(curves, axis labels): the author's factors and labels, else units that read well."""
+    labels = []
+    for along, column in zip("xy", columns):
+        factor = number(plot.get(f"{along}_scale"))
+        name, unit = name_and_unit(column)
+        if factor is not None:
+            lines = [{**c, along: [v * factor for v in c[along]]} for c in lines]
+            unit = "" if factor != 1 else unit
+        else:
+            lines, unit = scaled(lines, along, unit)
+        labels.append(plot.get(f"{along}_label") or (f"{name} [{unit}]" if unit else name))
+    return lines, labels
+
+
+def _name(label):
+    return label.split(" [")[0]

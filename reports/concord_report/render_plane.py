@@ -1,0 +1,78 @@
+"""Draws one frame of a plane problem with matplotlib: finite elements with their own interpolation,
+particles as the shares of the deformed body that are theirs. One colour a particle: what a particle
+method computes is not smoothed."""
+
+import numpy as np
+
+from . import frames, plane_cells
+
+GREY = "#9e9e9e"
+EDGES = (0.05, 0.06, 0.08, 0.28)
+DOT_FROM = 15.0  # pixels of a spacing from which on particles show as dots
+EDGES_FROM = 9.0  # pixels of an element from which on its edges are drawn
+MANY = 6000  # elements; more are cut into fewer triangles
+DPI = 100
+
+
+def size(view, long):
+    """Pixels of the drawing: the shape of what is seen, its longer side `long`."""
+    wide, high = (view["high"][k] - view["low"][k] for k in (0, 1))
+    reach = max(wide, high) or 1.0
+    return tuple(2 * max(40, round(long * v / reach / 2)) for v in (wide, high))
+
+
+def draw(frame, job):
+    """RGBA pixels of the job's frame on a transparent ground."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import LinearSegmentedColormap, Normalize
+    from matplotlib.figure import Figure
+    positions, reference = frames.deformed(frame, job["scale"])
+    data = frames.values(frame, job["color"])
+    view = job["view"]
+    pixels = size(view, job["long"])
+    figure = Figure(figsize=[p / DPI for p in pixels], dpi=DPI)
+    canvas = FigureCanvasAgg(figure)
+    figure.patch.set_alpha(0)
+    axes = figure.add_axes([0, 0, 1, 1])
+    axes.set_axis_off()
+    axes.set_xlim(view["low"][0], view["high"][0])
+    axes.set_ylim(view["low"][1], view["high"][1])
+    colours = LinearSegmentedColormap.from_list("page", job["stops"])
+    colours.set_bad(GREY)
+    look = {"cmap": colours, "norm": Normalize(*job["limits"])}
+    per_metre = pixels[0] / max(view["high"][0] - view["low"][0], 1e-300)
+    if job["particles"]:
+        reference = positions if reference is None else reference
+        _particles(axes, reference[:, :2], positions[:, :2], data, job["h"], per_metre, look)
+    else:
+        _elements(axes, frame, positions[:, :2], data, per_metre, look)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba()).copy()
+
+
+def _elements(axes, frame, positions, data, per_metre, look):
+    from matplotlib.collections import LineCollection
+    pieces = 4 if len(frame["types"]) < MANY else 2
+    points, values, triangles, outlines = plane_cells.elements(frame, positions, data, pieces)
+    axes.tripcolor(points[:, 0], points[:, 1], triangles, values, shading="gouraud", **look)
+    length = np.median([np.linalg.norm(o[4] - o[0]) for o in outlines[:500]])
+    if length * per_metre > EDGES_FROM:
+        axes.add_collection(LineCollection(outlines, colors=[EDGES], linewidths=0.8), autolim=False)
+
+
+def _particles(axes, reference, positions, data, h, per_metre, look):
+    from matplotlib.collections import EllipseCollection, PolyCollection
+    good = np.isfinite(positions).all(axis=1)
+    reference, positions = reference[good], positions[good]
+    data = np.ma.masked_invalid(data[good])
+    quads, owner, alone = plane_cells.shares(reference, positions, h)
+    filled = PolyCollection(quads, array=data[owner], edgecolors="face", linewidths=0.5, **look)
+    axes.add_collection(filled, autolim=False)
+    if len(alone):
+        wide = np.full(len(alone), h or 0.01 * np.ptp(positions, axis=0).max())
+        axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(alone)), units="xy", offsets=positions[alone],
+                                              offset_transform=axes.transData, array=data[alone], linewidths=0,
+                                              **look), autolim=False)
+    if h and h * per_metre > DOT_FROM:
+        axes.plot(positions[:, 0], positions[:, 1], ".", color=EDGES[:3], alpha=0.45, markersize=1.8,
+                  markeredgewidth=0)
