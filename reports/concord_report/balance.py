@@ -15,13 +15,13 @@ def any_broken(rows):
 
 
 def how_many(rows):
-    """"", "⊗ energy balance does not close" or the same with "2 of 5 runs"."""
+    """"", "⊗ does not close" or "⊗ does not close in 2 of 5": a cell below "energy balance"."""
     count = sum(map(broken, rows))
     if not count:
         return ""
-    return f"{SIGN} {WORDS}" + (f", {count} of {len(rows)} runs" if len(rows) > 1 else "")
+    return f"{SIGN} does not close" + (f" in {count} of {len(rows)}" if len(rows) > 1 else "")
 
 
-def state(row):
-    """What a table of single runs says: the mark, "closes", or nothing where there is no balance."""
-    return f"{SIGN} {WORDS.removeprefix('energy balance ')}" if broken(row) else str(row.get("balance") or "")
+def state(rows):
+    """The same for a table of single runs, which also says "closes"; nothing without a balance."""
+    return how_many(rows) or str(rows[0].get("balance") or "")

@@ -6,9 +6,11 @@ from .digits import exact, grouped, pretty
 from .histories import pair
 from .kinds import capital, kind, scaled
 from .loading import number
+from .palette import DASHES
 from .quantities import name_and_unit
 
 FINE = 240  # points of a drawn curve
+MARKS = 4  # markers on a line
 
 
 @kind("curve")
@@ -26,19 +28,32 @@ def curve(study, cases, plot):
                 continue
             x, y, row = found
             style = styles.setdefault((case.method, case.variant, case.scene), len(styles))
+            round_ = style // len(DASHES)  # when all dashes are used up, paler ones follow
             lines.append({"case": -1 - len(lines), "method": case.method, "dash": style, "style": style,
-                          "label": _label(case, level, row, len(levels) > 1), "x": x, "y": y, "rank": rank,
+                          "fade": max(0.35, 1 - 0.4 * round_), "label": _label(case, level, row, len(levels) > 1), "x": x, "y": y, "rank": rank,
                           "low": None, "high": None, "slope": None, "broken": [broken(row)]})
     if not lines:
         return f"no history.csv of this report has the columns {columns[0]} and {columns[1]}"
+    _mark(lines)
     lines, labels = _in_units(lines, plot, columns)
     ends = "; ".join(f"{c['label']} ends at {pretty(c['x'][-1])}, {pretty(c['y'][-1])}" for c in lines)
     inset = plot.get("inset")
     return {"scales": ["linear", "linear"], "xlabel": labels[0], "ylabel": labels[1], "curves": lines,
             "title": plot.get("title") or f"{capital(_name(labels[1]))} against {_name(labels[0])}",
             "note": "Darker lines are finer." if any(c["rank"] for c in lines) else "",
-            "inset": [inset["x"], inset["y"]] if inset else None, "wide": True,
+            "inset": [inset["x"], inset["y"]] if inset else None, "legend": True,
             "triangles": [], "alt": f"Plot of {labels[1]} against {labels[0]}. {ends}."}
+
+
+def _mark(lines):
+    """Gives the finest line of each case a few markers, at places that no other line has, when several
+    cases share a method's colour."""
+    finest = [c for c in lines if c["rank"] == 0]
+    if len(finest) == len({c["method"] for c in finest}):
+        return
+    for number, line in enumerate(finest):
+        count = len(line["x"])
+        line["marks"] = sorted({round((k + (number + 0.5) / len(finest)) * (count - 1) / MARKS) for k in range(MARKS)})
 
 
 def _near(a, b):

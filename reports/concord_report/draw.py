@@ -17,7 +17,8 @@ INK, MUTED, GRID, PAPER = (ROLES[r][1] for r in ("ink", "muted", "grid", "paper"
 SIZE = 13
 HEIGHT = 380
 BOTTOM, TOP = 50, 12
-AREA, WIDE = 360, 520  # width of the axes beside labels; all in CSS pixels
+AREA, BESIDE = 360, 330  # width of the axes beside labels, beside a legend; all in CSS pixels
+SAMPLE = 26  # length of a line in the legend
 LINE = 1.32  # height of a label's line, in font sizes
 PLAIN = 500  # width of a plot without labels
 
@@ -37,13 +38,14 @@ def draw(spec):
         spec = _with_zero(spec)
     curves = spec["curves"]
     labelled = spec["labelled"]
-    right = 22 + max(_width(_end_label(c)) for c in curves) if labelled else 14
+    legend = spec.get("legend", False)
+    right = 22 + (SAMPLE + 4) * legend + max(_width(_end_label(c)) for c in curves) if labelled else 14
     height = max(HEIGHT, BOTTOM + TOP + 16 + len(curves) * SIZE * LINE if labelled else 0)
     figure = Figure(figsize=(PLAIN / 72, height / 72), dpi=72)
     axes = figure.add_axes([0, 0, 1, 1])
     _frame(axes, spec, curves)
     left = 18 + _tick_width(axes)
-    width = left + (WIDE if spec.get("wide") else AREA) + right if labelled else PLAIN
+    width = left + (BESIDE if legend else AREA) + right if labelled else PLAIN
     figure.set_size_inches(width / 72, height / 72)
     axes.set_position([left / width, BOTTOM / height, (width - left - right) / width,
                        (height - BOTTOM - TOP - 16) / height])
@@ -57,7 +59,7 @@ def draw(spec):
     if spec.get("inset"):
         draw_inset.draw(axes, curves, spec["inset"], lines)
     if labelled:
-        _labels(axes, curves)
+        _labels(axes, curves, legend)
     return svg.fragment(figure, spec["ident"], spec["alt"])
 
 
@@ -72,7 +74,7 @@ def lines(axes, curves):
 
 def _long(curve):
     """True for a curve that is drawn without markers."""
-    return len(curve["x"]) > 40 or "dash" in curve
+    return len(curve["x"]) > 40 or "dash" in curve  # of a line, not of points
 
 
 def _with_zero(spec):
@@ -189,13 +191,25 @@ def _dashes(curve, width):
     return (0, style) if style else "-"
 
 
+def _stroke(curve, sample=False):
+    """What a curve's line looks like. Lines that may coincide carry a few markers, each its own
+    places, so that each of them can be found."""
+    rank, hue = curve.get("rank", 0), colour(curve["method"])
+    look = {"color": hue, "linewidth": 1.7 if rank == 0 else 1.0, "linestyle": _dashes(curve, 1.7),
+            "alpha": (1 if rank == 0 else max(0.35, 0.75 - 0.18 * rank)) * curve.get("fade", 1)}
+    if "marks" in curve:
+        look |= {"marker": marker(curve["style"]), "markersize": 5, "markeredgewidth": 1.1, "markeredgecolor": hue,
+                 "markerfacecolor": PAPER if hollow(curve["style"]) else hue}
+        if not sample:
+            look["markevery"] = curve["marks"]
+    return look
+
+
 def _line(axes, curve, number, long):
-    hue, style, rank = colour(curve["method"]), curve["style"], curve.get("rank", 0)
-    width = 1.7 if rank == 0 else 1.0
+    hue, style = colour(curve["method"]), curve["style"]
     x, y, apart = curve["x"], curve["y"], curve.get("apart")
-    line, = axes.plot(x[1:] if apart else x, y[1:] if apart else y, color=hue,
-                      linewidth=width, linestyle=_dashes(curve, 1.7),
-                      alpha=1 if rank == 0 else max(0.3, 0.7 - 0.15 * rank), zorder=3 - 0.1 * rank, clip_on=long)
+    line, = axes.plot(x[1:] if apart else x, y[1:] if apart else y, zorder=3 - 0.1 * curve.get("rank", 0),
+                      clip_on=long, **_stroke(curve))
     line.set_gid(f"curve:{curve['case']}:{number}")
     broken = curve.get("broken") or [False] * len(x)
     for bad in () if long else (False, True):
@@ -223,23 +237,27 @@ def _baseline(axes, curve, number):
         band.set_gid(f"curve:{curve['case']}:{number}s")
 
 
-def _labels(axes, curves):
-    """Each at the end that is nearest to the right edge, joined to it by a thin line."""
+def _labels(axes, curves, legend=False):
+    """Each at the end that is nearest to the right edge, joined to it by a thin line; in a legend,
+    where curves coincide, with a piece of its line instead."""
+    from matplotlib.lines import Line2D
     ends = []
     for curve in curves:
         last = max(range(len(curve["x"])), key=lambda i: curve["x"][i])
         ends.append(axes.transData.transform((curve["x"][last], curve["y"][last])))
     box = axes.bbox
     places = draw_labels.spread([e[1] for e in ends], SIZE * LINE, box.y0 + 6, box.y1 + 8)
-    edge = box.x1 + 12
-    back = axes.figure.transFigure.inverted()
+    edge = box.x1 + 12 + (SAMPLE + 4 if legend else 0)
+    figure, back = axes.figure, axes.figure.transFigure.inverted()
     for number, (curve, end, y) in enumerate(zip(curves, ends, places)):
-        (x0, y0), (x1, y1) = back.transform((end[0] + 4, end[1])), back.transform((edge - 2, y))
-        from matplotlib.lines import Line2D
-        lead = Line2D([x0, x1], [y0, y1], color=colour(curve["method"]), linewidth=0.7, alpha=0.7,
-                      transform=axes.figure.transFigure)
+        start, look = (end[0] + 4, end[1]), {"linewidth": 0.7, "alpha": 0.7, "color": colour(curve["method"])}
+        if legend:
+            start, look = (edge - SAMPLE - 4, y), _stroke(curve, sample=True)
+        line = list(zip(*(back.transform(p) for p in (start, ((start[0] + edge - 4) / 2, y), (edge - 4, y)))))
+        pick = slice(None) if legend else slice(None, None, 2)
+        mark = {"markevery": [1]} if "marker" in look else {}
+        lead = Line2D(line[0][pick], line[1][pick], transform=figure.transFigure, **look, **mark)
         lead.set_gid(f"curve:{curve['case']}:{number}l")
-        axes.figure.add_artist(lead)
-        place = back.transform((edge, y))
-        words = axes.figure.text(*place, _end_label(curve), ha="left", va="center", color=INK)
+        figure.add_artist(lead)
+        words = figure.text(*back.transform((edge, y)), _end_label(curve), ha="left", va="center", color=INK)
         words.set_gid(f"curve:{curve['case']}:{number}t")

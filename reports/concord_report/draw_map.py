@@ -12,7 +12,8 @@ from .palette import ROLES, VIRIDIS
 INK, MUTED, GRID = (ROLES[r][1] for r in ("ink", "muted", "grid"))
 DARK, LIGHT = "#0c0c0c", "#fdfdfd"  # of numbers on a cell; the same on either ground
 CELL = (54, 34)
-LEFT, TOP, TITLE, BOTTOM, RIGHT = 66, 30, 24, 46, 12
+HEAD = 26  # the line that says what the numbers are
+LEFT, TOP, TITLE, BOTTOM, RIGHT = 66, 28, 22, 48, 12
 STOPS = VIRIDIS[::-1]  # large values are dark: the eye finds the light minimum
 
 
@@ -37,10 +38,11 @@ def draw(spec, size):
     maps = spec["map"]
     titles = TITLE if any(m["title"] for m in maps) else 0
     width = LEFT + max(len(m["x"]) for m in maps) * CELL[0] + RIGHT
-    height = sum(TOP + titles + len(m["y"]) * CELL[1] + BOTTOM for m in maps)
-    width = max(width, 330)
+    height = sum(TOP + titles + len(m["y"]) * CELL[1] + BOTTOM for m in maps) + HEAD
+    width = max(width, 440, 8 + 0.62 * size * len(spec["label"]))
     figure = Figure(figsize=(width / 72, height / 72), dpi=72)
-    top = height
+    top = height - HEAD
+    figure.text(4 / width, 1 - 11 / height, spec["label"], color=INK, fontsize=size, va="center")
     for one in maps:
         _map(figure, spec, one, (width, height), top, size, titles)
         top -= TOP + titles + len(one["y"]) * CELL[1] + BOTTOM
@@ -55,7 +57,6 @@ def _map(figure, spec, one, page, top, size, titles):
     if titles:
         text(4, top - 14, one["title"], va="center", fontweight="bold")
     text(4, top - titles - 14, spec["ylabel"], va="center")
-    text(LEFT + columns * CELL[0], top - titles - 14, spec["label"], va="center", ha="right", color=MUTED)
     floor = top - titles - TOP - rows * CELL[1]
     for i in range(rows):
         y = floor + i * CELL[1]

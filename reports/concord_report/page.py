@@ -66,9 +66,10 @@ def _group(group):
             "swatch": swatch(case.method, case.style) if whole is None else "",
             "alt": f"{case.label}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
                    f"{bar['unit']}".strip()})
-    return {"bar": bar, "pictures": views, "title": variant_text((whole or {}).get("caption") or ""),
+    columns = pictures.columns(whole, len(jobs)) if whole else 0
+    return {"bar": bar, "pictures": views, "columns": columns, "title": variant_text((whole or {}).get("caption") or ""),
             "common": [*common, pictures.extent(jobs[0])] if whole else [],
-            "columns": pictures.columns(whole, len(jobs)) if whole else 0}
+            "panel_width": pictures.panel_width(jobs[0], -(-len(jobs) // (columns or 1)))}
 
 
 def _tables(study, cases):
@@ -90,7 +91,7 @@ def _study_view(study, cases, jobs, store, warnings):
         "question": study.data.get("question") or "", "source": study.data.get("source") or "",
         "paper_statement": study.data.get("paper_statement") or "", "mode": study.data.get("mode") or "",
         "verdict": study_verdict(study), "counts": outputs.count([study]),
-        "claims": [_claim_view(c) for c in study.claims], "plots": drawn,
+        "claims": sorted(map(_claim_view, study.claims), key=lambda c: c["verdict"] != "fail"), "plots": drawn,
         "key": [{"case": c.index, "label": c.label, "swatch": swatch(c.method, c.style)}
                 for c in cases if c.index in shown],
         "groups": groups, "missing": missing, "tables": _tables(study, cases),

@@ -3,6 +3,7 @@ process of its own (VTK needs an X display), plane bodies by matplotlib, and cac
 
 import base64
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -130,7 +131,7 @@ def _share_scales(jobs):
         span = min(r[0] for r in ranges), max(r[1] for r in ranges)
         job["limits"], job["diverging"] = _limits(*span, wanted, job["color"].endswith("_difference"))
         job["beyond"] = [span[0] < job["limits"][0], span[1] > job["limits"][1]]
-        job["long"] = LONG if len(same) <= 2 else LONG * 3 // 5 if len(same) <= 6 else LONG // 2
+        job["long"] = LONG if len(same) <= 2 else LONG * 3 // 4 if len(same) <= 4 else LONG * 3 // 5
 
 
 def _limits(low, high, wanted=None, difference=False):
@@ -236,8 +237,7 @@ def caption(job):
         parts.append(f"displacement ×{exact(job['scale'])}")
     if job["whole"] is not None:
         factor, unit = engineering(max(map(abs, job["limits"])), field_name(job["color"])[1])
-        low, high = (pretty(v * factor) for v in job["range"])
-        parts.append(f"{low} to {high} {unit}".strip())
+        parts.append(f"{ends(*(v * factor for v in job['range']))} {unit}".strip())
     if job.get("how") == "scatter":
         parts.append("plain scatter plot, because VTK or xvfb is not installed")
     if job["nan"]:
@@ -254,7 +254,6 @@ def bar(job):
     factor, unit = engineering(max(abs(low), abs(high)), unit)
     scale_text = ""
     if not unit and 0 < max(abs(low), abs(high)) < 1e-2:
-        import math
         power = math.floor(math.log10(max(abs(low), abs(high))))
         factor, scale_text = 10.0 ** -power, pretty(10.0 ** power, 1).removeprefix("1×")
     marks = []
@@ -266,6 +265,16 @@ def bar(job):
             "low": pretty(low * factor), "high": pretty(high * factor), "beyond": job["beyond"]}
 
 
+def ends(low, high):
+    """"0.018 to 0.673": both with the decimals of the larger one, which has three digits."""
+    size = max(abs(low), abs(high))
+    if not 1e-3 <= size < 1e5:
+        return f"{pretty(low)} to {pretty(high)}"
+    places = max(0, 2 - math.floor(math.log10(size)))
+    def text(v): return f"{v:.{places}f}".replace("-", "−") if round(v, places) else "0"
+    return f"{text(low)} to {text(high)}"
+
+
 def extent(job):
     """How large a part of space each panel shows."""
     if not job["plane"]:
@@ -273,6 +282,15 @@ def extent(job):
     wide, high = (job["view"]["high"][k] - job["view"]["low"][k] for k in (0, 1))
     factor, unit = (1e3, "mm") if max(wide, high) < 1 else (1, "m")
     return f"each picture {exact(wide * factor, 3)} {unit} × {exact(high * factor, 3)} {unit}"
+
+
+WIDEST, TALLEST = 330, 460  # of a panel on the page [CSS pixels]
+
+
+def panel_width(job, rows):
+    """How wide a panel stands on the page at most: tall bodies take less, rows of them still less."""
+    tall = TALLEST if rows == 1 else 0.75 * TALLEST
+    return round(min(WIDEST, max(150, tall * job["width"] / job["height"])))
 
 
 def columns(whole, count):

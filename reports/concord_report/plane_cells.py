@@ -79,7 +79,29 @@ def elements(frame, positions, data, pieces):
     return np.concatenate(points), np.concatenate(values), np.concatenate(triangles), outlines
 
 
-def _rim(corners, pieces=4):
+def rim(frame, outlines):
+    """The body's edge as polylines: those edges of elements that no other element shares. `outlines`
+    as from `elements`."""
+    ends, lines, first = [], [], 0
+    for kind in map(int, np.unique(frame["types"])):
+        corner = _of_kind(frame, kind)[:, :CORNERS[kind]]
+        for k in range(CORNERS[kind]):
+            ends.append(np.stack([corner[:, k], corner[:, (k + 1) % CORNERS[kind]]], -1))
+            lines += [outlines[first + e][k * PIECES:(k + 1) * PIECES + 1] for e in range(len(corner))]
+        first += len(corner)
+    return [lines[i] for i in _lonely(np.concatenate(ends))]
+
+
+def _lonely(ends):
+    """Positions of the pairs that occur once, in either direction."""
+    _, first, count = np.unique(np.sort(ends, axis=1), axis=0, return_index=True, return_counts=True)
+    return first[count == 1]
+
+
+PIECES = 4  # of an element's edge, drawn as a polyline
+
+
+def _rim(corners, pieces=PIECES):
     """(r, s) once around the parent."""
     places = np.array([(0, 0), (1, 0), (0, 1), (0, 0)] if corners == 3 else
                       [(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)], float)
@@ -90,14 +112,14 @@ def _rim(corners, pieces=4):
 
 
 def shares(reference, positions, h):
-    """(quadrilaterals, owner of each, particles without any). The triangles between neighbouring
+    """(quadrilaterals, owner of each, particles without any, the body's edge as lines). The triangles between neighbouring
     particles of the reference body are cut by their medians; the pieces next to a particle are its
     share, carried along by the deformation."""
     from matplotlib.tri import Triangulation
     try:
         corner = Triangulation(reference[:, 0], reference[:, 1]).triangles
     except (RuntimeError, ValueError):  # fewer than three points, or all on a line
-        return np.zeros((0, 4, 2)), np.zeros(0, int), np.arange(len(positions))
+        return np.zeros((0, 4, 2)), np.zeros(0, int), np.arange(len(positions)), []
     edge = reference[np.roll(corner, -1, axis=1)] - reference[corner]
     length = np.linalg.norm(edge, axis=2)
     area = np.abs(edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0])  # twice the triangle's
@@ -109,4 +131,5 @@ def shares(reference, positions, h):
     after, before = np.roll(x, -1, axis=1), np.roll(x, 1, axis=1)
     quads = np.stack([x, (x + after) / 2, centre, (x + before) / 2], axis=2).reshape(-1, 4, 2)
     alone = np.setdiff1d(np.arange(len(positions)), corner)
-    return quads, corner.reshape(-1), alone
+    ends = np.stack([corner, np.roll(corner, -1, axis=1)], -1).reshape(-1, 2)
+    return quads, corner.reshape(-1), alone, list(positions[ends[_lonely(ends)]])

@@ -8,6 +8,7 @@ from . import frames, plane_cells
 
 GREY = "#9e9e9e"
 EDGES = (0.05, 0.06, 0.08, 0.28)
+RIM = (0.45, 0.47, 0.5, 0.9)
 DOT_FROM = 15.0  # pixels of a spacing from which on particles show as dots
 EDGES_FROM = 9.0  # pixels of an element from which on its edges are drawn
 MANY = 6000  # elements; more are cut into fewer triangles
@@ -58,6 +59,13 @@ def _elements(axes, frame, positions, data, per_metre, look):
     length = np.median([np.linalg.norm(o[4] - o[0]) for o in outlines[:500]])
     if length * per_metre > EDGES_FROM:
         axes.add_collection(LineCollection(outlines, colors=[EDGES], linewidths=0.8), autolim=False)
+    _rim(axes, plane_cells.rim(frame, outlines))
+
+
+def _rim(axes, lines):
+    """The body's edge: where a field is nearly white, the page would swallow the body."""
+    from matplotlib.collections import LineCollection
+    axes.add_collection(LineCollection(lines, colors=[RIM], linewidths=1.1, capstyle="round"), autolim=False)
 
 
 def _particles(axes, reference, positions, data, h, per_metre, look):
@@ -65,9 +73,10 @@ def _particles(axes, reference, positions, data, h, per_metre, look):
     good = np.isfinite(positions).all(axis=1)
     reference, positions = reference[good], positions[good]
     data = np.ma.masked_invalid(data[good])
-    quads, owner, alone = plane_cells.shares(reference, positions, h)
+    quads, owner, alone, edge = plane_cells.shares(reference, positions, h)
     filled = PolyCollection(quads, array=data[owner], edgecolors="face", linewidths=0.5, **look)
     axes.add_collection(filled, autolim=False)
+    _rim(axes, edge)
     if len(alone):
         wide = np.full(len(alone), h or 0.01 * np.ptp(positions, axis=0).max())
         axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(alone)), units="xy", offsets=positions[alone],

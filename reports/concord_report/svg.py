@@ -22,8 +22,9 @@ def fragment(figure, ident, alt):
     text = _own_ids(text, ident)
     text = _page_style(text)
     view = re.search(r'viewBox="([^"]+)"', text)[1]
+    wide = max(440, round(float(view.split()[2])))  # never enlarged: letters of all charts are alike
     head = (f'<svg viewBox="{view}" role="img" aria-label="{html.escape(alt, quote=True)}" '
-            'class="chart">')
+            f'class="chart" style="max-width:{wide}px">')
     text = head + text[text.index(">") + 1:]
     return re.sub(r"\n\s*", "\n", text)
 

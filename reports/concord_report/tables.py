@@ -9,7 +9,7 @@ from .palette import swatch
 from .quantities import axis, name_and_unit
 
 
-FOLD_FROM = 40  # lines: a longer table is folded up
+FOLD_FROM = 30  # lines: a longer table is folded up
 
 
 def text_column(label, texts, head=False, marks=None):
@@ -195,7 +195,7 @@ def runs_table(cases):
          numbers("end t" if all(is_static(r) for _, r in rows) else "end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
          numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
          numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
-         balance_column([[r] for _, r in rows], lambda one: state(one[0])),
+         balance_column([[r] for _, r in rows], state),
          text_column("remark", [str(r.get("error") or "") for _, r in rows])
          if any(r.get("error") for _, r in rows) else None])
 

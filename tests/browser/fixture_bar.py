@@ -149,7 +149,7 @@ PLOTS = [
     {"kind": "curve", "title": "Stress and strain", "method": ["cbm", "fem"], "variant": ["xi 0", "T6"], **STRESS,
      "inset": {"x": [0.03, 0.036], "y": [735, 755]}},
     {"kind": "curve", "method": "tlsph", "variant": [f"support {s}, psi {p:g}" for s in SUPPORTS for p in (0.01, 0.1, 1)],
-     "title": "SPH", **STRESS},
+     "title": "SPH", **STRESS, "inset": {"x": [0.02, 0.026], "y": [715, 745]}},
     {"kind": "sweep", **ERROR, "title": "Error of plastic strain", "y_scale": 100.0, "y_label": "error [%]",
      "baseline": [{"method": "cbm", "variant": "xi 0", "resolution": 72.7273, "label": "CBM"},
                   {"method": "voronoi"}]},
