@@ -88,7 +88,8 @@ def registry_breaches(top, listed):
         if re.search(r"\bRegisterMethod\s*<", text):
             registering.setdefault(str(Path(path).parent), []).append(path)
     homes = {f"particle/{f}" for f in folders(top, "particle") - {"core"}}
-    homes |= {f"sph_reference/{f}" for f in folders(top, "sph_reference")} | {"fem_reference"}
+    homes |= {f"sph_reference/{f}" for f in folders(top, "sph_reference")}
+    homes |= {"fem_reference"} | {f"fem_reference/{f}" for f in folders(top, "fem_reference")}
     for home in homes - registering.keys():
         yield f"{home}: registers no method"
     for place in registering.keys() - homes:
@@ -103,7 +104,8 @@ def readme_breaches(top):
     wanted += [top / "scene/library" / name for name in folders(top, "scene", "library")]
     wanted += [top / "studies" / name for name in folders(top, "studies") - {"driver"}]
     wanted += [top / "particle" / name for name in folders(top, "particle")]
-    wanted += [top / "sph_reference" / name for name in folders(top, "sph_reference")]
+    for room in ("sph_reference", "fem_reference"):
+        wanted += [top / room / name for name in folders(top, room)]
     for folder in wanted:
         readme = folder / "README.md"
         if not readme.exists() or len(readme.read_text(encoding="utf-8")) < 100:
