@@ -129,6 +129,22 @@ void write_provenance(hid_t file, double time) {
 
 }  // namespace
 
+void write_frame(const std::filesystem::path& file, double time, std::span<const Vec3> points,
+                 const std::vector<FrameField>& point_fields,
+                 std::span<const Index> connectivity, std::span<const Index> offsets,
+                 std::span<const unsigned char> types) {
+  const std::filesystem::path temporary = file.string() + ".part";
+  {
+    const Hdf5Handle handle(
+        H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+        "create " + temporary.string());
+    write_grid(handle, points, point_fields,
+               cells_of(points.size(), connectivity, offsets, types));
+    write_provenance(handle, time);
+  }
+  std::filesystem::rename(temporary, file);
+}
+
 FrameWriter::FrameWriter(const std::filesystem::path& folder) : m_folder(folder) {
   std::filesystem::create_directories(folder);
 }
@@ -139,15 +155,7 @@ void FrameWriter::write(double time, std::span<const Vec3> points,
                         std::span<const unsigned char> types) {
   if (!active()) return;
   const std::string name = fmt::format("fields_{:04d}.hdf", m_series.size());
-  const std::filesystem::path temporary = m_folder / (name + ".part");
-  {
-    const Hdf5Handle file(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                          H5Fclose, "create " + temporary.string());
-    write_grid(file, points, point_fields,
-               cells_of(points.size(), connectivity, offsets, types));
-    write_provenance(file, time);
-  }
-  std::filesystem::rename(temporary, m_folder / name);
+  write_frame(m_folder / name, time, points, point_fields, connectivity, offsets, types);
   m_series.emplace_back(name, time);
   nlohmann::ordered_json series;
   series["file-series-version"] = "1.0";

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <stdexcept>
 
 namespace concord::scene {
 namespace {
@@ -72,6 +73,17 @@ double relative_l2(std::span<const Vec3> a, std::span<const Vec3> b,
   RelativeNorm norm;
   for (std::size_t i = 0; i < a.size(); ++i) norm.add(weight[i], a[i], b[i]);
   return norm.value();
+}
+
+double field_error(std::span<const double> reference, std::span<const double> value) {
+  assert(reference.size() == value.size());
+  double difference = 0, scale = 0;
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    difference += (reference[i] - value[i]) * (reference[i] - value[i]);
+    scale += reference[i] * reference[i];
+  }
+  if (!(scale > 0)) throw std::invalid_argument("a reference that is zero everywhere");
+  return std::sqrt(difference / scale);  // (29)
 }
 
 void add_exact_errors(const Problem& problem, Result& result) {

@@ -31,6 +31,13 @@ struct FrameField {
   std::span<const double> values;
 };
 
+/// One VTKHDF frame in a file of its own, written by way of a temporary. Arguments as
+/// FrameWriter::write.
+void write_frame(const std::filesystem::path& file, double time, std::span<const Vec3> points,
+                 const std::vector<FrameField>& point_fields,
+                 std::span<const Index> connectivity = {}, std::span<const Index> offsets = {},
+                 std::span<const unsigned char> types = {});
+
 /// VTKHDF 1.0 UnstructuredGrid frames, `fields_0000.hdf`, ..., and `fields.hdf.series` with
 /// their times. Positions are current ones; "displacement" must be among the point fields for
 /// reference positions.

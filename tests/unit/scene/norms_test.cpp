@@ -67,3 +67,14 @@ TEST(Norms, NothingWithoutAnExactSolution) {
   add_exact_errors(p, r);
   EXPECT_TRUE(r.errors.empty());
 }
+
+// Eq. (29) of the Continuum Bond Method paper, without its factor 100.
+TEST(Norms, FieldErrorByHand) {
+  const std::vector<double> reference{3, 0, 4}, value{3, 2, 3};
+  EXPECT_DOUBLE_EQ(field_error(reference, value), std::sqrt(5.0) / 5);
+  EXPECT_DOUBLE_EQ(field_error(value, reference), std::sqrt(5.0) / std::sqrt(22.0))
+      << "the first is the reference";
+  EXPECT_EQ(field_error(reference, reference), 0);
+  const std::vector<double> zero(3, 0);
+  EXPECT_THROW(field_error(zero, value), std::invalid_argument);
+}
