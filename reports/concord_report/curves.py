@@ -81,7 +81,7 @@ def _in_units(lines, plot, columns):
     labels = []
     for along, column in zip("xy", columns):
         factor = number(plot.get(f"{along}_scale"))
-        name, unit = name_and_unit(column)
+        name, unit = name_and_unit(f"quantities.{column}")  # the header tells a unit left out here
         if factor is not None:
             lines = [{**c, along: [v * factor for v in c[along]]} for c in lines]
             unit = "" if factor != 1 else unit

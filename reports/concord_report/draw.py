@@ -195,7 +195,7 @@ def _stroke(curve, sample=False):
     """What a curve's line looks like. Lines that may coincide carry a few markers, each its own
     places, so that each of them can be found."""
     rank, hue = curve.get("rank", 0), colour(curve["method"])
-    look = {"color": hue, "linewidth": 1.7 if rank == 0 else 1.0, "linestyle": _dashes(curve, 1.7),
+    look = {"color": hue, "linewidth": 1.7 if rank == 0 else 1.2, "linestyle": _dashes(curve, 1.7),
             "alpha": (1 if rank == 0 else max(0.35, 0.75 - 0.18 * rank)) * curve.get("fade", 1)}
     if "marks" in curve:
         look |= {"marker": marker(curve["style"]), "markersize": 5, "markeredgewidth": 1.1, "markeredgecolor": hue,

@@ -112,24 +112,38 @@ def _rim(corners, pieces=PIECES):
 
 
 def shares(reference, positions, h):
-    """(quadrilaterals, owner of each, particles without any, the body's edge as lines). The triangles between neighbouring
-    particles of the reference body are cut by their medians; the pieces next to a particle are its
-    share, carried along by the deformation."""
+    """(quadrilaterals, owner of each, particles without any, the body's edge as lines). The triangles
+    between neighbouring particles of the reference body are cut where points are as near to one
+    particle as to the next; the pieces next to a particle are its share, carried along by the
+    deformation."""
     from matplotlib.tri import Triangulation
     try:
         corner = Triangulation(reference[:, 0], reference[:, 1]).triangles
     except (RuntimeError, ValueError):  # fewer than three points, or all on a line
         return np.zeros((0, 4, 2)), np.zeros(0, int), np.arange(len(positions)), []
-    edge = reference[np.roll(corner, -1, axis=1)] - reference[corner]
-    length = np.linalg.norm(edge, axis=2)
-    area = np.abs(edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0])  # twice the triangle's
-    with np.errstate(divide="ignore"):
-        radius = length.prod(axis=1) / (2 * area)
-    corner = corner[radius <= SLENDER * max(h or 0.0, float(np.median(length)))]
+    opposite = np.linalg.norm(reference[np.roll(corner, -1, axis=1)] - reference[np.roll(corner, 1, axis=1)], axis=2)
+    weight, radius = _centres(opposite)
+    inside = radius <= SLENDER * max(h or 0.0, float(np.median(opposite)))
+    corner, weight = corner[inside], weight[inside]
     x = positions[corner]
-    centre = np.repeat(x.mean(axis=1)[:, None], 3, axis=1)
+    centre = np.repeat(np.einsum("tk,tkd->td", weight, x)[:, None], 3, axis=1)
     after, before = np.roll(x, -1, axis=1), np.roll(x, 1, axis=1)
     quads = np.stack([x, (x + after) / 2, centre, (x + before) / 2], axis=2).reshape(-1, 4, 2)
     alone = np.setdiff1d(np.arange(len(positions)), corner)
     ends = np.stack([corner, np.roll(corner, -1, axis=1)], -1).reshape(-1, 2)
     return quads, corner.reshape(-1), alone, list(positions[ends[_lonely(ends)]])
+
+
+def _centres(opposite):
+    """(barycentric coordinates of the circumcentres, circumradii) of triangles with these edges, each
+    opposite to its corner. Where the circumcentre lies outside, the middle of the longest edge
+    stands for it: the pieces still fill the triangle."""
+    squares = opposite ** 2
+    weight = squares * (squares.sum(axis=1, keepdims=True) - 2 * squares)
+    outside = (weight < 0).any(axis=1)
+    weight[outside] = np.where(weight[outside] < 0, 0.0, 0.5)
+    sixteen = 2 * (squares.sum(axis=1) ** 2 / 2 - (squares ** 2).sum(axis=1))  # (4 area)^2, Heron
+    with np.errstate(divide="ignore", invalid="ignore"):
+        radius = np.where(sixteen > 0, opposite.prod(axis=1) / np.sqrt(np.maximum(sixteen, 0)), np.inf)
+        weight = weight / weight.sum(axis=1, keepdims=True)
+    return np.nan_to_num(weight, nan=1 / 3), radius

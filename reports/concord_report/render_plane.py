@@ -1,5 +1,5 @@
 """Draws one frame of a plane problem with matplotlib: finite elements with their own interpolation,
-particles as the shares of the deformed body that are theirs. One colour a particle: what a particle
+particles as the share of the deformed body that is nearest to each. One colour a particle: what a particle
 method computes is not smoothed."""
 
 import numpy as np

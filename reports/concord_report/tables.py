@@ -15,7 +15,7 @@ FOLD_FROM = 30  # lines: a longer table is folded up
 def text_column(label, texts, head=False, marks=None):
     """A column of words; `head` makes its cells row headers, `marks` are drawings before them."""
     marks = marks or [""] * len(texts)
-    cells = [{"text": t or DASH, "value": t or "", "mark": m} for t, m in zip(texts, marks)]
+    cells = [{"text": t or DASH, "value": t or "", "mark": m, "badge": False} for t, m in zip(texts, marks)]
     return {"label": label, "kind": "head" if head else "text", "cells": cells}
 
 

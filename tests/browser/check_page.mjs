@@ -14,7 +14,7 @@ const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 const file = process.argv[2];
 const url = pathToFileURL(file).href;
-const MOST_BYTES = 5e6;
+const MOST_BYTES = 3e6;
 
 /** A page at the report, with everything that it logs or asks for. */
 async function opened(browser, options = {}) {
@@ -41,7 +41,7 @@ const sticking = () => {
 };
 
 const checks = {
-  async 'is one file below 5 MB, says nothing to the console and asks for nothing'(browser) {
+  async 'is one file below 3 MB, says nothing to the console and asks for nothing'(browser) {
     assert.ok(statSync(file).size < MOST_BYTES, `${statSync(file).size} bytes`);
     const { page, seen, close } = await opened(browser);
     await page.evaluate(() => window.scrollTo(0, document.body.scrollHeight));

@@ -237,7 +237,7 @@ class Report(unittest.TestCase):
             self.assertNotIn(outside, html)
         self.assertIn("No picture of fem Q9 16", html)
         self.assertIn("no_such_column", html)
-        self.assertEqual(html.count("<img "), 6)
+        self.assertEqual(html.count("<img "), 23)
 
     def test_pictures_show_something(self):
         import base64
@@ -258,15 +258,15 @@ class Report(unittest.TestCase):
         self.assertIn("measured 5.90×10⁻⁸", failure.get("message"))
         self.assertIsNone(suites["fixture_patch"].find("testcase[@name='a']/failure"))
         self.assertIsNotNone(suites["fixture_cube"].find("testcase[@name='later']/skipped"))
-        self.assertEqual(sum(int(s.get("tests")) for s in root), 8)
+        self.assertEqual(sum(int(s.get("tests")) for s in root), 10)
 
     def test_summary_and_json(self):
         summary = (self.out / "summary.md").read_text()
-        self.assertIn("1 of 7 claims failed", summary)
+        self.assertIn("2 of 9 claims failed", summary)
         self.assertLess(summary.index("## Failed"), summary.index("## Fixture: beam"))
         data = json.loads((self.out / "report.json").read_text())
-        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 6, "fail": 1, "open": 1}))
-        self.assertEqual(len(data["studies"]), 4)
+        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 7, "fail": 2, "open": 1}))
+        self.assertEqual(len(data["studies"]), 5)
 
     def test_second_time_is_the_same(self):
         before = (self.out / "index.html").read_bytes()
