@@ -1,9 +1,12 @@
 #include "particle/core/plasticity.hpp"
 
+#include "particle/core/plasticity_plane.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -226,33 +229,49 @@ PlasticState PlasticHistory::committed(Index a) const {
 }
 
 template <int Dim>
-void PlasticHistory::stress_in(Index first, int count,
+void PlasticHistory::stress_of(Index first, int lane,
                                const double (&h)[Dim * Dim][plastic_width],
                                double (&p)[Dim * Dim][plastic_width],
                                double (&j)[plastic_width]) {
-  std::atomic_ref(m_has_trial).store(true, std::memory_order_relaxed);
-  for (int l = 0; l < count; ++l) {
-    Mat3 H = Mat3::Zero();
-    for (int k = 0; k < Dim * Dim; ++k) H(k % Dim, k / Dim) = h[k][l];
-    const J2Hencky::Update u = m_law.update(H, committed(first + l));
-    const auto i = static_cast<std::size_t>(first + l);
-    for (int k = 0; k < 3; ++k) m_new[k][i] = u.state.A(k, k);
-    m_new[3][i] = u.state.A(0, 1);
-    if constexpr (Dim == 3) m_new[4][i] = u.state.A(1, 2), m_new[5][i] = u.state.A(2, 0);
-    m_new[m_components][i] = u.state.eps_p;
-    for (int k = 0; k < Dim * Dim; ++k) p[k][l] = u.P(k % Dim, k / Dim);
-    j[l] = u.sound ? scene::volume_change(H) : std::numeric_limits<double>::quiet_NaN();
-  }
+  const Index a = first + lane;
+  Mat3 H = Mat3::Zero();
+  for (int k = 0; k < Dim * Dim; ++k) H(k % Dim, k / Dim) = h[k][lane];
+  const J2Hencky::Update u = m_law.update(H, committed(a));
+  for (int k = 0; k < 3; ++k) m_new[k][a] = u.state.A(k, k);
+  m_new[3][a] = u.state.A(0, 1);
+  if constexpr (Dim == 3) m_new[4][a] = u.state.A(1, 2), m_new[5][a] = u.state.A(2, 0);
+  m_new[m_components][a] = u.state.eps_p;
+  for (int k = 0; k < Dim * Dim; ++k) p[k][lane] = u.P(k % Dim, k / Dim);
+  j[lane] = u.sound ? scene::volume_change(H) : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Several threads evaluate at once, each its particles.
+void PlasticHistory::note_trial() {
+  const std::atomic_ref has_trial(m_has_trial);
+  if (!has_trial.load(std::memory_order_relaxed))
+    has_trial.store(true, std::memory_order_relaxed);
 }
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[9][plastic_width],
                             double (&p)[9][plastic_width], double (&j)[plastic_width]) {
-  stress_in<3>(first, count, h, p, j);
+  note_trial();
+  for (int l = 0; l < count; ++l) stress_of<3>(first, l, h, p, j);
 }
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[4][plastic_width],
                             double (&p)[4][plastic_width], double (&j)[plastic_width]) {
-  stress_in<2>(first, count, h, p, j);
+  note_trial();
+  PlaneStates old, next;
+  double(*const from[])[plastic_width] = {&old.A11, &old.A22, &old.A33, &old.A12, &old.eps_p};
+  for (int k = 0; k < 5; ++k)  // the columns are padded by a group
+    std::copy_n(m_old[k].data() + first, plastic_width, *from[k]);
+  unsigned beyond = plane_lanes(
+      {m_law.shear_modulus(), m_law.bulk_modulus(), m_law.hardening()}, h, old, next, p, j);
+  const double(*const to[])[plastic_width] = {&next.A11, &next.A22, &next.A33, &next.A12,
+                                              &next.eps_p};
+  for (int k = 0; k < 5; ++k) std::copy_n(*to[k], count, m_new[k].data() + first);
+  for (beyond &= (1u << count) - 1; beyond != 0; beyond &= beyond - 1)
+    stress_of<2>(first, std::countr_zero(beyond), h, p, j);
 }
 
 void PlasticHistory::commit() {

@@ -51,6 +51,7 @@ class J2Hencky {
 
   double shear_modulus() const { return m_mu; }
   double bulk_modulus() const { return m_kappa; }
+  const scene::Hardening& hardening() const { return m_hardening; }
 
  private:
   /// eps_p increment d >= 0 with trial - 3 mu d = tau_y(eps_p + d), trial > tau_y(eps_p).
@@ -81,13 +82,15 @@ class PlasticHistory {
   void commit();
 
  private:
+  /// The same for one lane, by J2Hencky::update.
   template <int Dim>
-  void stress_in(Index first, int count, const double (&h)[Dim * Dim][plastic_width],
+  void stress_of(Index first, int lane, const double (&h)[Dim * Dim][plastic_width],
                  double (&p)[Dim * Dim][plastic_width], double (&j)[plastic_width]);
+  void note_trial();
 
   J2Hencky m_law;
   Index m_n;
-  int m_components;  ///< 4 in plane strain (11, 22, 33, 12), 6 in 3D, then eps_p
+  int m_components;  ///< 4 in plane strain (11, 22, 33, 12), 6 in 3D (23, 31 too), then eps_p
   std::vector<Column> m_old, m_new;  ///< [component][particle]
   bool m_has_trial = false;          ///< a force evaluation came after the last commit
 };

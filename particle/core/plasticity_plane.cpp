@@ -1,0 +1,233 @@
+#include "particle/core/plasticity_plane.hpp"
+
+#include "particle/core/stress_kernel.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+namespace concord::particle {
+
+namespace {
+
+constexpr int W = plastic_width;
+using Row = double[W];
+
+/// asinh(s)/s from z = s^2 <= 1/64: sum (-z)^n (2n)!/(4^n n!^2 (2n + 1)), nine terms,
+/// truncation below 1e-18.
+CONCORD_INLINE double asinh_over_argument(double z) {
+  double sum = 6435.0 / 557056;
+  sum = sum * z - 143.0 / 10240;
+  sum = sum * z + 231.0 / 13312;
+  sum = sum * z - 63.0 / 2816;
+  sum = sum * z + 35.0 / 1152;
+  sum = sum * z - 5.0 / 112;
+  sum = sum * z + 3.0 / 40;
+  sum = sum * z - 1.0 / 6;
+  return sum * z + 1.0;
+}
+
+/// sinh(x)/x from y = x^2 <= 1/64: truncation y^6/13! below 1e-20.
+CONCORD_INLINE double sinh_over_argument(double y) {
+  double sum = 1 + y / 110;
+  sum = 1 + y / 72 * sum;
+  sum = 1 + y / 42 * sum;
+  sum = 1 + y / 20 * sum;
+  return 1 + y / 6 * sum;
+}
+
+/// cosh(x) - 1 likewise: relative truncation below 1e-18.
+CONCORD_INLINE double cosh_minus_one(double y) {
+  double sum = 1 + y / 90;
+  sum = 1 + y / 56 * sum;
+  sum = 1 + y / 30 * sum;
+  sum = 1 + y / 12 * sum;
+  return 0.5 * y * sum;
+}
+
+/// e^x - 1 for |x| <= 1/5: the series of exp_near_zero without its first term.
+CONCORD_INLINE double expm1_near_zero(double x) {
+  double sum = 1.0 / 39916800;
+  sum = sum * x + 1.0 / 3628800;
+  sum = sum * x + 1.0 / 362880;
+  sum = sum * x + 1.0 / 40320;
+  sum = sum * x + 1.0 / 5040;
+  sum = sum * x + 1.0 / 720;
+  sum = sum * x + 1.0 / 120;
+  sum = sum * x + 1.0 / 24;
+  sum = sum * x + 1.0 / 6;
+  sum = sum * x + 1.0 / 2;
+  sum = sum * x + 1.0;
+  return sum * x;
+}
+
+/// e^x for x <= 0 (below -700: e^-700): x = k ln 2 + r, e^x = 2^k (e^(r/2))^2. k is read from
+/// the last bits of x/ln 2 + 1.5 2^52.
+CONCORD_INLINE double exp_of_negative(double x) {
+  constexpr double shift = 0x1.8p52;
+  constexpr double ln2_high =
+      0x1.62e42feep-1;  // ln 2 in 32 bits: its products with k are exact
+  constexpr double ln2_low = 0x1.a39ef35793c76p-33;
+  x = x < -700.0 ? -700.0 : x;
+  const double shifted = x * std::numbers::log2e + shift, k = shifted - shift;
+  const double r = (x - k * ln2_high) - k * ln2_low;
+  const double root = exp_near_zero(0.5 * r);
+  const auto bits = (std::bit_cast<std::uint64_t>(shifted) + 1023) << 52;
+  return root * root * std::bit_cast<double>(bits);
+}
+
+/// Trial strains of the lanes. In the plane ln b_e has the mean (ln J - w) and the deviator
+/// ratio (half, shear; shear, -half) with ratio = d/r, d = e_1 - e_2 = asinh(r/D).
+struct Trial {
+  Row metric11, metric22, metric12;  ///< F F^T - I
+  Row half, shear;                   ///< (b_11 - b_22)/2, b_12
+  Row ratio;                         ///< d/r
+  Row d2;                            ///< d^2
+  Row v;                             ///< e_33 - tr e/3
+  Row log_J, inverse_J;
+  Row q;      ///< trial tau_eq [Pa]
+  Row decay;  ///< exp(-alpha eps_p)
+  Row yield;  ///< tau_y(eps_p) [Pa]
+  Row near;   ///< 1 where the series hold, else 0
+};
+
+CONCORD_INLINE void trial_strains(const PlaneLaw& law, const double (&h)[4][W],
+                                  const PlaneStates& old, double (&j)[W], Trial& t) {
+  const scene::Hardening& c = law.hardening;
+#pragma omp simd
+  for (int l = 0; l < W; ++l) {
+    const double h00 = h[0][l], h10 = h[1][l], h01 = h[2][l], h11 = h[3][l];
+    const double f00 = 1 + h00, f11 = 1 + h11;
+    const double A11 = old.A11[l], A22 = old.A22[l], A12 = old.A12[l], A33 = old.A33[l];
+    const double m11 = 2 * h00 + h00 * h00 + h01 * h01;
+    const double m22 = 2 * h11 + h10 * h10 + h11 * h11;
+    const double m12 = h01 + h10 + h00 * h10 + h01 * h11;
+    const double g00 = f00 * A11 + h01 * A12, g01 = f00 * A12 + h01 * A22;  // F A
+    const double g10 = h10 * A11 + f11 * A12, g11 = h10 * A12 + f11 * A22;
+    const double half =
+        0.5 * ((m11 - m22) + ((g00 * f00 + g01 * h01) - (g10 * h10 + g11 * f11)));
+    const double shear = m12 + (g00 * h10 + g01 * f11);
+    const double change = h00 + h11 + (h00 * h11 - h01 * h10);
+    const double inverse_J = 1 / (1 + change);
+    const double log_J = log1p_near_one(change), w = 0.5 * log1p_near_one(A33);
+    // D^2 = b_1 b_2 = J^2/(1 + A_33).
+    const double inverse_D2 = (1 + A33) * inverse_J * inverse_J;
+    const double r2 = half * half + shear * shear, z = r2 * inverse_D2;
+    const double ratio = asinh_over_argument(z) * std::sqrt(inverse_D2);
+    const double d2 = ratio * ratio * r2, v = w - log_J * (1.0 / 3);
+    const double decay = exp_of_negative(-c.exponent * old.eps_p[l]);
+    t.metric11[l] = m11, t.metric22[l] = m22, t.metric12[l] = m12;
+    t.half[l] = half, t.shear[l] = shear, t.ratio[l] = ratio, t.d2[l] = d2, t.v[l] = v;
+    t.log_J[l] = log_J, t.inverse_J[l] = inverse_J, t.decay[l] = decay;
+    t.q[l] = law.mu * std::sqrt(9 * v * v + 3 * d2);
+    t.yield[l] = c.saturation_stress + c.modulus * old.eps_p[l] -
+                 (c.saturation_stress - c.yield_stress) * decay;
+    t.near[l] = (std::abs(change) <= 0.25) & (std::abs(A33) <= 0.25) & (z <= 1.0 / 64) ? 1 : 0;
+    j[l] = change;
+  }
+}
+
+/// Radial return: beta = tau_y(new)/q in yielding lanes, from three steps of Newton's method
+/// from d = 0.
+CONCORD_INLINE void return_map(const PlaneLaw& law, const PlaneStates& old, Trial& t,
+                               PlaneStates& next, Row& beta) {
+  const scene::Hardening& c = law.hardening;
+  const double rise = c.saturation_stress - c.yield_stress;
+  constexpr double round_off = std::numeric_limits<double>::epsilon();
+#pragma omp simd
+  for (int l = 0; l < W; ++l) {
+    const double q = t.q[l], slope = 3 * law.mu + c.modulus;
+    double d = (q - t.yield[l]) / (slope + rise * c.exponent * t.decay[l]);
+    double decay = t.decay[l] * exp_near_zero(-c.exponent * d);
+    for (int it = 0; it < 2; ++it) {
+      const double tau = c.saturation_stress + c.modulus * (old.eps_p[l] + d) - rise * decay;
+      d += (q - 3 * law.mu * d - tau) / (slope + rise * c.exponent * decay);
+      decay = t.decay[l] * exp_near_zero(-c.exponent * d);
+    }
+    const double tau = c.saturation_stress + c.modulus * (old.eps_p[l] + d) - rise * decay;
+    const bool yields = q > t.yield[l];
+    const bool converged = (std::abs(q - 3 * law.mu * d - tau) <= 4 * round_off * q) &
+                           (c.exponent * d <= 0.2) & (d >= 0);
+    beta[l] = yields ? tau / q : 1.0;
+    next.eps_p[l] = yields ? old.eps_p[l] + d : old.eps_p[l];
+    t.near[l] = !yields | converged ? t.near[l] : 0;
+  }
+}
+
+/// C_p^-1 - I = F^-1 b_e F^-T - I of yielding lanes, b_e in the trial's axes with strains beta
+/// v, beta d; see plastic_metric() in plasticity.cpp.
+CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, Trial& t,
+                               const Row& beta, PlaneStates& next) {
+#pragma omp simd
+  for (int l = 0; l < W; ++l) {
+    const double v = beta[l] * t.v[l], d2 = beta[l] * beta[l] * t.d2[l];
+    const double twice_e33 = 2 * (v + t.log_J[l] * (1.0 / 3));
+    const double log_D = t.log_J[l] * (2.0 / 3) - v;
+    const double D = expm1_near_zero(log_D);
+    const double mean = D + (1 + D) * cosh_minus_one(d2);  // (b_11 + b_22)/2 - 1
+    const double skew = (1 + D) * sinh_over_argument(d2) * beta[l] * t.ratio[l];
+    const double m11 = t.metric11[l], m22 = t.metric22[l], m12 = t.metric12[l];
+    const bool far = (std::abs(m11) > 0.5) | (std::abs(m22) > 0.5) | (std::abs(m12) > 0.5);
+    const double s11 = mean + skew * t.half[l] - (far ? -1.0 : m11);
+    const double s22 = mean - skew * t.half[l] - (far ? -1.0 : m22);
+    const double s12 = skew * t.shear[l] - (far ? 0.0 : m12);
+    const double i = t.inverse_J[l];
+    const double a = (1 + h[3][l]) * i, b = -h[2][l] * i;  // F^-1 = (a, b; c, d)
+    const double c = -h[1][l] * i, d = (1 + h[0][l]) * i;
+    const double a11 = a * a * s11 + 2 * a * b * s12 + b * b * s22;
+    const double a22 = c * c * s11 + 2 * c * d * s12 + d * d * s22;
+    const double a12 = a * c * s11 + (a * d + b * c) * s12 + b * d * s22;
+    const double a33 = expm1_near_zero(twice_e33), one = far ? 1.0 : 0.0;
+    const bool yields = t.q[l] > t.yield[l];
+    const bool near = (std::abs(log_D) <= 0.2) & (std::abs(twice_e33) <= 0.2);
+    next.A11[l] = yields ? a11 - one : old.A11[l];
+    next.A22[l] = yields ? a22 - one : old.A22[l];
+    next.A12[l] = yields ? a12 : old.A12[l];
+    next.A33[l] = yields ? a33 : old.A33[l];
+    t.near[l] = !yields | near ? t.near[l] : 0;
+  }
+}
+
+/// P = tau F^-T, tau = kappa ln J I + 2 mu beta dev e.
+CONCORD_INLINE void piola_stress(const PlaneLaw& law, const double (&h)[4][W], const Trial& t,
+                                 const Row& beta, double (&p)[4][W]) {
+#pragma omp simd
+  for (int l = 0; l < W; ++l) {
+    const double scale = law.mu * beta[l], i = t.inverse_J[l];
+    const double mean = law.kappa * t.log_J[l] - scale * t.v[l];
+    const double half = scale * t.ratio[l] * t.half[l];
+    const double t11 = mean + half, t22 = mean - half, t12 = scale * t.ratio[l] * t.shear[l];
+    const double f00 = 1 + h[0][l], h10 = h[1][l], h01 = h[2][l], f11 = 1 + h[3][l];
+    p[0][l] = (t11 * f11 - t12 * h01) * i;
+    p[1][l] = (t12 * f11 - t22 * h01) * i;
+    p[2][l] = (t12 * f00 - t11 * h10) * i;
+    p[3][l] = (t22 * f00 - t12 * h10) * i;
+  }
+}
+
+}  // namespace
+
+CONCORD_CLONES unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][W],
+                                    const PlaneStates& old, PlaneStates& next,
+                                    double (&p)[4][W], double (&j)[W]) {
+  Trial t;
+  trial_strains(law, h, old, j, t);
+  Row beta;
+  int flowing = 0;
+  for (int l = 0; l < W; ++l) flowing += t.q[l] > t.yield[l];
+  if (flowing > 0) {  // an elastic lane takes the same values on either way
+    return_map(law, old, t, next, beta);
+    new_metric(h, old, t, beta, next);
+  } else {
+    next = old;
+    for (double& one : beta) one = 1.0;
+  }
+  piola_stress(law, h, t, beta, p);
+  unsigned beyond = 0;
+  for (int l = 0; l < W; ++l) beyond |= (t.near[l] == 1 ? 0u : 1u) << l;
+  return beyond;
+}
+
+}  // namespace concord::particle
