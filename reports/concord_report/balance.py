@@ -2,7 +2,8 @@
 
 SIGN = "⊗"
 WORDS = "energy balance does not close"
-NOTE = f"{SIGN} Energy balance does not close: the numbers of such a run are not to be relied upon, whatever they look like."
+NOTE = (f"{SIGN} Energy balance does not close: the numbers of such a run are not to be relied upon, "
+        "whatever they look like.")
 
 
 def broken(row):

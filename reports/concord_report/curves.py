@@ -30,8 +30,8 @@ def curve(study, cases, plot):
             style = styles.setdefault((case.method, case.variant, case.scene), len(styles))
             round_ = style // len(DASHES)  # when all dashes are used up, paler ones follow
             lines.append({"case": -1 - len(lines), "method": case.method, "dash": style, "style": style,
-                          "fade": max(0.35, 1 - 0.4 * round_), "label": _label(case, level, row, len(levels) > 1), "x": x, "y": y, "rank": rank,
-                          "low": None, "high": None, "slope": None, "broken": [broken(row)]})
+                          "fade": max(0.35, 1 - 0.4 * round_), "x": x, "y": y, "rank": rank,
+                          "label": _label(case, level, row, len(levels) > 1), "low": None, "high": None, "slope": None, "broken": [broken(row)]})
     if not lines:
         return f"no history.csv of this report has the columns {columns[0]} and {columns[1]}"
     _mark(lines)
@@ -40,7 +40,7 @@ def curve(study, cases, plot):
     inset = plot.get("inset")
     return {"scales": ["linear", "linear"], "xlabel": labels[0], "ylabel": labels[1], "curves": lines,
             "title": plot.get("title") or f"{capital(_name(labels[1]))} against {_name(labels[0])}",
-            "note": "Darker lines are finer." if any(c["rank"] for c in lines) else "",
+            "note": "The stronger the line, the finer the run." if any(c["rank"] for c in lines) else "",
             "inset": [inset["x"], inset["y"]] if inset else None, "legend": True,
             "triangles": [], "alt": f"Plot of {labels[1]} against {labels[0]}. {ends}."}
 

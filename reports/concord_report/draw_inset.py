@@ -28,6 +28,8 @@ def draw(axes, curves, window, lines):
     for one, span in ((inset.xaxis, window[0]), (inset.yaxis, window[1])):
         one.set_major_locator(FixedLocator([float(f"{t:.9g}") for t in ticks(*span, count=3)]))
         one.set_major_formatter(FuncFormatter(lambda v, _: exact(float(f"{v:.9g}"), 5)))
+    for words in inset.get_yticklabels() + inset.get_xticklabels():
+        words.set_bbox({"facecolor": PAPER, "edgecolor": "none", "pad": 0.8})  # above the connectors
     for side in inset.spines.values():
         side.set_color(MUTED)
     _, connectors = axes.indicate_inset_zoom(inset, edgecolor=MUTED, linewidth=0.9, alpha=0.9)

@@ -95,10 +95,52 @@ def _check(path, data):
                              f"{row.get('method')!r}, expected text")
 
 
+PAIR, WINDOW = "[low, high]", "{x: [low, high], y: [low, high]}"
+
+
+def _is_pair(value):
+    return isinstance(value, list) and len(value) == 2 and None not in map(number, value) and value[0] < value[1]
+
+
+def _is_window(value, both):
+    return isinstance(value, dict) and set(value) <= {"x", "y"} and all(map(_is_pair, value.values())) \
+        and len(value) >= (2 if both else 1)
+
+
+def _is_table_list(value):
+    return isinstance(value, list) and all(isinstance(v, dict) for v in value)
+
+
+# list and key of an entry: (what is allowed in words, the test); a missing key is fine everywhere
+ALLOWED = {
+    ("plots", "inset"): (WINDOW, lambda v: _is_window(v, True)),
+    ("plots", "baseline"): ("a selection {method, variant, ...} or a list of them",
+                            lambda v: isinstance(v, dict) or _is_table_list(v)),
+    ("plots", "resolutions"): ("a list of numbers",
+                               lambda v: isinstance(v, list) and None not in map(number, v)),
+    ("pictures", "panels"): ("a list of {method, variant, ...}", _is_table_list),
+    ("pictures", "range"): (f'"common" or {PAIR}', lambda v: v == "common" or _is_pair(v)),
+    ("pictures", "crop"): (f"{WINDOW}, or one of the two", lambda v: _is_window(v, False)),
+}
+
+
+def _check_figures(path, data):
+    """The nested keys of plots and pictures, those of panels included."""
+    for name in ("plots", "pictures"):
+        for position, entry in enumerate(data.get(name) or []):
+            panels = entry.get("panels") if _is_table_list(entry.get("panels")) else []
+            for part in [entry, *panels]:
+                for key, value in part.items():
+                    words, fits = ALLOWED.get((name, key), ("", None))
+                    if fits and value is not None and not fits(value):
+                        raise InputError(f"{path}: {name}[{position}]: key '{key}': found {value!r}, expected {words}")
+
+
 def load_study(path):
     """The study in `path` (a study.json)."""
     data = read_json(path)
     _check(path, data)
+    _check_figures(path, data)
     return Study(data["name"], path.parent, data, data.get("claims") or [], data.get("rows") or [])
 
 

@@ -21,7 +21,8 @@ def slug(name):
 
 def _claim_view(claim):
     return {"id": claim["id"], "statement": claim["statement"], "source": claim.get("source") or "",
-            "source_value": claims.source_text(claim), "note": claims.typeset(claim.get("note") or claim.get("reason") or ""),
+            "source_value": claims.source_text(claim),
+            "note": claims.typeset(claim.get("note") or claim.get("reason") or ""),
             "measured": claims.measured_text(claim),
             "bound": claims.bound_text(claim), "verdict": verdict(claim)}
 
@@ -59,7 +60,7 @@ def _group(group):
     common = [p for p in told[0][1] if all(p in parts for _, parts in told)] if whole and len(jobs) > 1 else []
     views = []
     for job, (case, parts) in zip(jobs, told):
-        parts = [p.replace(" ", "\u00a0") if len(p) < 28 else p for p in parts if p not in common]
+        parts = [p.replace(" ", "\u00a0") if len(p) < 20 else p for p in parts if p not in common]
         views.append({
             "uri": pictures.data_uri(job), "width": job["width"], "height": job["height"],
             "caption": variant_text(job["picture"].get("caption") or ""), "parts": parts,

@@ -110,17 +110,10 @@ def _share_scales(jobs):
     for job in jobs:
         alike = [j for j in jobs if _together(job, j)]
         flat = all(j["flat"] for j in alike)
-        room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
-        seen = [j["seen_flat" if flat else "seen"] for j in alike]
-        job["view"] = {"flat": flat, "low": [min(s[0][k] for s in seen) - room for k in range(3)],
-                       "high": [max(s[1][k] for s in seen) + room for k in range(3)]}
-        for k, along in enumerate("xy"):
-            if flat and job["crop"] and job["crop"].get(along):
-                job["view"]["low"][k], job["view"]["high"][k] = map(float, job["crop"][along])
         job["plane"] = flat and all(j["plane"] for j in alike)
+        job["view"] = _view(job, alike, flat)
         wanted = job["picture"].get("range")
-        wanted = [float(v) for v in wanted] if isinstance(wanted, list) else wanted
-        same = [j for j in alike if j["color"] == job["color"] and j["picture"].get("range") == job["picture"].get("range")]
+        same = [j for j in alike if j["color"] == job["color"] and j["picture"].get("range") == wanted]
         sizes = [max(map(abs, j["range"])) for j in same]
         shared = wanted is not None or job["whole"] is not None or \
             (min(sizes) > 0 and max(sizes) / min(sizes) <= SHARED_UP_TO)
@@ -132,6 +125,18 @@ def _share_scales(jobs):
         job["limits"], job["diverging"] = _limits(*span, wanted, job["color"].endswith("_difference"))
         job["beyond"] = [span[0] < job["limits"][0], span[1] > job["limits"][1]]
         job["long"] = LONG if len(same) <= 2 else LONG * 3 // 4 if len(same) <= 4 else LONG * 3 // 5
+
+
+def _view(job, alike, flat):
+    """What is seen: the extent of all bodies, or the crop."""
+    room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
+    seen = [j["seen_flat" if flat else "seen"] for j in alike]
+    view = {"flat": flat, "low": [min(s[0][k] for s in seen) - room for k in range(3)],
+            "high": [max(s[1][k] for s in seen) + room for k in range(3)]}
+    for k, along in enumerate("xy"):
+        if flat and (job["crop"] or {}).get(along):
+            view["low"][k], view["high"][k] = map(float, job["crop"][along])
+    return view
 
 
 def _limits(low, high, wanted=None, difference=False):

@@ -190,14 +190,20 @@ def runs_table(cases):
         "Every run",
         [text_column("case", [c.label for c, _ in rows], head=True),
          number_column("resolution", [r.get("resolution") for _, r in rows],
-                       texts=exact_column([r.get("resolution") for _, r in rows])), numbers("seed", "seed"), numbers("particles", "particles"),
+                       texts=exact_column([r.get("resolution") for _, r in rows])),
+         numbers("seed", "seed"), numbers("particles", "particles"),
          numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
-         numbers("end t" if all(is_static(r) for _, r in rows) else "end [s]", "t_end"), *[numbers(axis(e), f"errors.{e}") for e in errors],
+         numbers("end t" if all(is_static(r) for _, r in rows) else "end [s]", "t_end"),
+         *[numbers(axis(e), f"errors.{e}") for e in errors],
          numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
          numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
          balance_column([[r] for _, r in rows], state),
-         text_column("remark", [str(r.get("error") or "") for _, r in rows])
-         if any(r.get("error") for _, r in rows) else None])
+         text_column("remark", [_remark(r) for _, r in rows]) if any(_remark(r) for _, r in rows) else None])
+
+
+def _remark(row):
+    """Why a run failed, or was compared with nothing."""
+    return str(row.get("error") or dig(row, "comparison.reason") or "")
 
 
 MACHINE = (("processor", "machine.cpu"), ("SIMD", "machine.simd"), ("threads", "machine.threads"),
