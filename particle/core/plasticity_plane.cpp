@@ -31,19 +31,19 @@ CONCORD_INLINE double asinh_over_argument(double z) {
 
 /// sinh(x)/x from y = x^2 <= 1/64: truncation y^6/13! below 1e-20.
 CONCORD_INLINE double sinh_over_argument(double y) {
-  double sum = 1 + y / 110;
-  sum = 1 + y / 72 * sum;
-  sum = 1 + y / 42 * sum;
-  sum = 1 + y / 20 * sum;
-  return 1 + y / 6 * sum;
+  double sum = 1 + y * (1.0 / 110);
+  sum = 1 + y * (1.0 / 72) * sum;
+  sum = 1 + y * (1.0 / 42) * sum;
+  sum = 1 + y * (1.0 / 20) * sum;
+  return 1 + y * (1.0 / 6) * sum;
 }
 
 /// cosh(x) - 1 likewise: relative truncation below 1e-18.
 CONCORD_INLINE double cosh_minus_one(double y) {
-  double sum = 1 + y / 90;
-  sum = 1 + y / 56 * sum;
-  sum = 1 + y / 30 * sum;
-  sum = 1 + y / 12 * sum;
+  double sum = 1 + y * (1.0 / 90);
+  sum = 1 + y * (1.0 / 56) * sum;
+  sum = 1 + y * (1.0 / 30) * sum;
+  sum = 1 + y * (1.0 / 12) * sum;
   return 0.5 * y * sum;
 }
 
@@ -90,6 +90,7 @@ struct Trial {
   Row q;      ///< trial tau_eq [Pa]
   Row decay;  ///< exp(-alpha eps_p)
   Row yield;  ///< tau_y(eps_p) [Pa]
+  Row flows;  ///< 1 where q > tau_y(eps_p), else 0
   Row near;   ///< 1 where the series hold, else 0
 };
 
@@ -129,37 +130,49 @@ CONCORD_INLINE void trial_strains(const PlaneLaw& law, const double (&h)[4][W],
   }
 }
 
-/// Radial return: beta = tau_y(new)/q in yielding lanes, from three steps of Newton's method
-/// from d = 0.
+/// The flowing lanes take the new values, the others keep the old ones bit for bit.
+CONCORD_INLINE void choose(const Row& flows, const Row& flowing, const Row& still,
+                           Row& chosen) {
+#pragma omp simd
+  for (int l = 0; l < W; ++l) chosen[l] = flows[l] > 0 ? flowing[l] : still[l];
+}
+
+/// Radial return: beta = tau_y(new)/q in flowing lanes, from three steps of Newton's method
+/// from d = 0. Converged: q - 3 mu d and tau_y are equal to the round-off of their terms.
 CONCORD_INLINE void return_map(const PlaneLaw& law, const PlaneStates& old, Trial& t,
                                PlaneStates& next, Row& beta) {
   const scene::Hardening& c = law.hardening;
-  const double rise = c.saturation_stress - c.yield_stress;
-  constexpr double round_off = std::numeric_limits<double>::epsilon();
+  const double rise = c.saturation_stress - c.yield_stress, slope = 3 * law.mu + c.modulus;
+  constexpr double tolerance = 16 * std::numeric_limits<double>::epsilon();
+  Row ratio, eps_p, near;
 #pragma omp simd
   for (int l = 0; l < W; ++l) {
-    const double q = t.q[l], slope = 3 * law.mu + c.modulus;
-    double d = (q - t.yield[l]) / (slope + rise * c.exponent * t.decay[l]);
-    double decay = t.decay[l] * exp_near_zero(-c.exponent * d);
-    for (int it = 0; it < 2; ++it) {
-      const double tau = c.saturation_stress + c.modulus * (old.eps_p[l] + d) - rise * decay;
-      d += (q - 3 * law.mu * d - tau) / (slope + rise * c.exponent * decay);
-      decay = t.decay[l] * exp_near_zero(-c.exponent * d);
-    }
-    const double tau = c.saturation_stress + c.modulus * (old.eps_p[l] + d) - rise * decay;
-    const bool yields = q > t.yield[l];
-    const bool converged = (std::abs(q - 3 * law.mu * d - tau) <= 4 * round_off * q) &
-                           (c.exponent * d <= 0.2) & (d >= 0);
-    beta[l] = yields ? tau / q : 1.0;
-    next.eps_p[l] = yields ? old.eps_p[l] + d : old.eps_p[l];
-    t.near[l] = !yields | converged ? t.near[l] : 0;
+    const double q = t.q[l], before = t.decay[l];
+    const double base = c.saturation_stress + c.modulus * old.eps_p[l];
+    double d = (q - t.yield[l]) / (slope + rise * c.exponent * before);
+    double decay = before * exp_near_zero(-c.exponent * d);
+    d += (q - slope * d - (base - rise * decay)) / (slope + rise * c.exponent * decay);
+    decay = before * exp_near_zero(-c.exponent * d);
+    d += (q - slope * d - (base - rise * decay)) / (slope + rise * c.exponent * decay);
+    decay = before * exp_near_zero(-c.exponent * d);
+    const double tau = base + c.modulus * d - rise * decay;
+    const double rest = std::abs(q - 3 * law.mu * d - tau) - tolerance * q;
+    near[l] = (rest <= 0) & (c.exponent * d <= 0.2) & (d >= 0) ? 1 : 0;
+    ratio[l] = tau / q;
+    eps_p[l] = old.eps_p[l] + d;
   }
+  const Row one = {1, 1, 1, 1, 1, 1, 1, 1};
+  choose(t.flows, ratio, one, beta);
+  choose(t.flows, eps_p, old.eps_p, next.eps_p);
+  choose(t.flows, near, one, near);
+  for (int l = 0; l < W; ++l) t.near[l] *= near[l];
 }
 
-/// C_p^-1 - I = F^-1 b_e F^-T - I of yielding lanes, b_e in the trial's axes with strains beta
+/// C_p^-1 - I = F^-1 b_e F^-T - I of flowing lanes, b_e in the trial's axes with strains beta
 /// v, beta d; see plastic_metric() in plasticity.cpp.
 CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, Trial& t,
                                const Row& beta, PlaneStates& next) {
+  Row a11, a22, a33, a12, near;
 #pragma omp simd
   for (int l = 0; l < W; ++l) {
     const double v = beta[l] * t.v[l], d2 = beta[l] * beta[l] * t.d2[l];
@@ -173,21 +186,23 @@ CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, 
     const double s11 = mean + skew * t.half[l] - (far ? -1.0 : m11);
     const double s22 = mean - skew * t.half[l] - (far ? -1.0 : m22);
     const double s12 = skew * t.shear[l] - (far ? 0.0 : m12);
+    const double one = far ? 1.0 : 0.0;
     const double i = t.inverse_J[l];
     const double a = (1 + h[3][l]) * i, b = -h[2][l] * i;  // F^-1 = (a, b; c, d)
     const double c = -h[1][l] * i, d = (1 + h[0][l]) * i;
-    const double a11 = a * a * s11 + 2 * a * b * s12 + b * b * s22;
-    const double a22 = c * c * s11 + 2 * c * d * s12 + d * d * s22;
-    const double a12 = a * c * s11 + (a * d + b * c) * s12 + b * d * s22;
-    const double a33 = expm1_near_zero(twice_e33), one = far ? 1.0 : 0.0;
-    const bool yields = t.q[l] > t.yield[l];
-    const bool near = (std::abs(log_D) <= 0.2) & (std::abs(twice_e33) <= 0.2);
-    next.A11[l] = yields ? a11 - one : old.A11[l];
-    next.A22[l] = yields ? a22 - one : old.A22[l];
-    next.A12[l] = yields ? a12 : old.A12[l];
-    next.A33[l] = yields ? a33 : old.A33[l];
-    t.near[l] = !yields | near ? t.near[l] : 0;
+    a11[l] = a * a * s11 + 2 * a * b * s12 + b * b * s22 - one;
+    a22[l] = c * c * s11 + 2 * c * d * s12 + d * d * s22 - one;
+    a12[l] = a * c * s11 + (a * d + b * c) * s12 + b * d * s22;
+    a33[l] = expm1_near_zero(twice_e33);
+    near[l] = (std::abs(log_D) <= 0.2) & (std::abs(twice_e33) <= 0.2) ? 1 : 0;
   }
+  choose(t.flows, a11, old.A11, next.A11);
+  choose(t.flows, a22, old.A22, next.A22);
+  choose(t.flows, a33, old.A33, next.A33);
+  choose(t.flows, a12, old.A12, next.A12);
+  const Row one = {1, 1, 1, 1, 1, 1, 1, 1};
+  choose(t.flows, near, one, near);
+  for (int l = 0; l < W; ++l) t.near[l] *= near[l];
 }
 
 /// P = tau F^-T, tau = kappa ln J I + 2 mu beta dev e.
@@ -215,8 +230,9 @@ CONCORD_CLONES unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][W]
   Trial t;
   trial_strains(law, h, old, j, t);
   Row beta;
-  int flowing = 0;
-  for (int l = 0; l < W; ++l) flowing += t.q[l] > t.yield[l];
+  double flowing = 0;
+  for (int l = 0; l < W; ++l) t.flows[l] = t.q[l] > t.yield[l] ? 1 : 0;
+  for (int l = 0; l < W; ++l) flowing += t.flows[l];
   if (flowing > 0) {  // an elastic lane takes the same values on either way
     return_map(law, old, t, next, beta);
     new_metric(h, old, t, beta, next);

@@ -162,7 +162,7 @@ TEST(J2Law, TinyStrainsAreThoseOfTheSmallStrainLaw) {
     const Mat3 N = 1.5 * s / q;
     s -= 2 * m.mu * d * N;
     // The small-strain law leaves terms of second order away.
-    const double second = 3 * H.squaredNorm(), stress = 2 * kappa * H.squaredNorm();
+    const double second = 3 * H.squaredNorm(), stress = 3 * kappa * H.squaredNorm();
     EXPECT_NEAR(u.state.eps_p, d, 1e-14 * d + second);
     EXPECT_LT((u.state.A + 2 * d * N).norm(), 1e-14 * d + second) << seed;
     EXPECT_LT((u.P - s - kappa * e.trace() * I).norm(), 1e-14 * u.P.norm() + stress) << seed;

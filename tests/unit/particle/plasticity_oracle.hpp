@@ -63,11 +63,11 @@ template <class T> double distance(const Tensor3<T>& B, const Tensor3<T>& C) {
   return std::sqrt(sum);
 }
 
-/// B^(1/2) by the product form of Denman and Beavers' iteration; the derivatives converge one
-/// iteration after the values.
+/// B^(1/2) by Denman and Beavers' iteration, which halves large and small eigenvalues towards
+/// the root before it converges quadratically; the derivatives converge an iteration later.
 template <class T> Tensor3<T> square_root(const Tensor3<T>& B) {
   Tensor3<T> Y = B, Z = Tensor3<T>::Identity();
-  for (int it = 0; it < 12; ++it) {
+  for (int it = 0; it < 24; ++it) {
     const Tensor3<T> next = T(0.5) * (Y + inverse(Z));
     Z = T(0.5) * (Z + inverse(Y));
     Y = next;
