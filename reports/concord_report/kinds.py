@@ -63,7 +63,7 @@ def is_static(row):
 
 def time_name(rows):
     """The quantity on the axis of histories: "time", "load parameter t", or both."""
-    states = {is_static(row) for row in rows}
+    states = {is_static(row) for row in rows if not row.get("error")}
     if states == {True}:
         return "load parameter t"
     return "time" if True not in states else "load parameter t, or time"

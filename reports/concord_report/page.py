@@ -69,7 +69,7 @@ def _group(group):
                    f"{bar['unit']}".strip()})
     columns = pictures.columns(whole, len(jobs)) if whole else 0
     return {"bar": bar, "pictures": views, "columns": columns, "title": variant_text((whole or {}).get("caption") or ""),
-            "common": [*common, pictures.extent(jobs[0])] if whole else [],
+            "common": [*common, pictures.extent(jobs[0], len(jobs))] if whole else [],
             "panel_width": pictures.panel_width(jobs[0], -(-len(jobs) // (columns or 1)))}
 
 

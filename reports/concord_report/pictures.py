@@ -280,13 +280,13 @@ def ends(low, high):
     return f"{text(low)} to {text(high)}"
 
 
-def extent(job):
-    """How large a part of space each panel shows."""
+def extent(job, count):
+    """How large a part of space each of the panels shows."""
     if not job["plane"]:
         return ""
     wide, high = (job["view"]["high"][k] - job["view"]["low"][k] for k in (0, 1))
     factor, unit = (1e3, "mm") if max(wide, high) < 1 else (1, "m")
-    return f"each picture {exact(wide * factor, 3)} {unit} × {exact(high * factor, 3)} {unit}"
+    return f"{'each picture' if count > 1 else 'picture'} {exact(wide * factor, 3)} {unit} × {exact(high * factor, 3)} {unit}"
 
 
 WIDEST, TALLEST = 330, 460  # of a panel on the page [CSS pixels]

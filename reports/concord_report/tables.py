@@ -3,12 +3,13 @@
 from .balance import NOTE, any_broken, how_many, state
 from .cases import fit_of, local_orders
 from .digits import DASH, between, column, exact_column, takes_powers
-from .kinds import is_static
+from .kinds import time_name
 from .loading import dig, number
 from .palette import swatch
 from .quantities import axis, name_and_unit
 
 
+ENDS = {"time": "end [s]", "load parameter t": "end t", "load parameter t, or time": "end (t, or time [s])"}
 FOLD_FROM = 30  # lines: a longer table is folded up
 
 
@@ -193,7 +194,7 @@ def runs_table(cases):
                        texts=exact_column([r.get("resolution") for _, r in rows])),
          numbers("seed", "seed"), numbers("particles", "particles"),
          numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
-         numbers("end t" if all(is_static(r) for _, r in rows) else "end [s]", "t_end"),
+         numbers(ENDS[time_name([r for _, r in rows])], "t_end"),
          *[numbers(axis(e), f"errors.{e}") for e in errors],
          numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
          numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
