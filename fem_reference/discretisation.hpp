@@ -50,6 +50,9 @@ template <int dim> class Discretisation {
   /// Gauss rule with n points a direction on hypercubes; on simplices the Witherden-Vincent
   /// rule that is exact to degree 2n-1.
   dealii::Quadrature<dim> gauss(int n) const;
+  /// Rule of the internal force: p+1 Gauss points a direction on hypercubes, the rule exact to
+  /// degree 2p-1 on simplices, or (three_points) that of the Continuum Bond Method paper's T6.
+  dealii::Quadrature<dim> force_rule() const;
   /// Smallest cell height h = volume of the smallest cell to the power 1/dim [m].
   double smallest_cell() const { return m_smallest; }
 
@@ -60,7 +63,7 @@ template <int dim> class Discretisation {
 
   scene::Mesh m_mesh;
   LagrangeShape m_cell_shape, m_facet_shape;
-  bool m_curved = false;
+  bool m_curved = false, m_three_points = false;
   double m_smallest = 0;
   dealii::Triangulation<dim> m_triangulation;
   std::unique_ptr<dealii::FESystem<dim>> m_element;

@@ -5,6 +5,8 @@
 #include <deal.II/base/multithread_info.h>
 
 #include <chrono>
+#include <memory>
+#include <optional>
 
 namespace concord::fem {
 
@@ -36,13 +38,32 @@ void set_initial_state(const scene::Problem& problem, const Discretisation<dim>&
   interpolate(problem.initial_velocity, state.v);
 }
 
+/// The law and its fields; of a plastic material, also the history.
+template <int dim> struct Material {
+  Material(const scene::Problem& problem, const Options& options,
+           const Discretisation<dim>& discretisation) {
+    if (problem.material.plastic()) {
+      flow.emplace(problem.material, options.yield_measure);
+      points.emplace(*flow);
+      fields = std::make_unique<PlasticFields<dim>>(discretisation, *points, problem.thickness);
+    } else {
+      elastic.emplace(problem, options.split_law);
+      fields = std::make_unique<ElasticFields<dim>>(discretisation, *elastic);
+    }
+  }
+  std::optional<Hyperelastic<dim>> elastic;
+  std::optional<Elastoplastic<dim>> flow;
+  std::optional<PlasticPoints<dim>> points;
+  std::unique_ptr<NodalFields<dim>> fields;
+};
+
 template <int dim>
 void run(const scene::Problem& problem, const scene::RunRequest& request,
          const Options& options, scene::Result& result) {
   const double started = now();
   if (request.progress) request.progress(0, "mesh and elements");
   const Discretisation<dim> discretisation(problem, request, options);
-  const Hyperelastic<dim> law(problem, options.split_law);
+  Material<dim> material(problem, options, discretisation);
   const Prescribed<dim> prescribed(problem, discretisation);
   const Loads<dim> loads(problem, discretisation);
   result.h = request.h;
@@ -53,12 +74,27 @@ void run(const scene::Problem& problem, const scene::RunRequest& request,
   result.notes["element"] = options.element;
   result.notes["geometry"] = discretisation.curved() ? "isoparametric" : "straight-sided";
   if (options.split_law) result.notes["law"] = "split neo-Hookean";
+  if (options.three_points) result.notes["quadrature"] = "3 points";
+  if (material.flow) {
+    const bool kirchhoff = options.yield_measure == YieldMeasure::kirchhoff;
+    result.notes["yield"] = kirchhoff ? "Kirchhoff stress" : "Cauchy stress";
+  }
   State state;
   set_initial_state(problem, discretisation, state);
-  Observer<dim> observer(problem, request, discretisation, law, prescribed,
+  Observer<dim> observer(problem, request, discretisation, *material.fields, prescribed,
                          prescribed.size() == 0 && !loads.any(), result);
-  Run<dim> parts{problem, request,  options, discretisation, law,    prescribed,
-                 loads,   observer, result,  state,          started};
+  Run<dim> parts{problem,
+                 request,
+                 options,
+                 discretisation,
+                 prescribed,
+                 loads,
+                 observer,
+                 result,
+                 state,
+                 material.elastic ? &*material.elastic : nullptr,
+                 material.points ? &*material.points : nullptr,
+                 started};
   try {
     if (options.solver == Solver::statics)
       run_statics(parts);

@@ -126,7 +126,7 @@ double whole_steps(double left, double dt) { return left / std::ceil(left / dt *
 
 template <int dim> void run_explicit(Run<dim>& run) {
   State& state = run.state;
-  const auto force = make_matrix_free(run.discretisation, run.law, run.problem.thickness);
+  const auto force = make_matrix_free(run.discretisation, *run.elastic, run.problem.thickness);
   Vector mass;
   lumped_mass(run.discretisation, run.problem.material.rho0, run.problem.thickness, mass);
   const MassProduct mass_product = [&mass](const Vector& x, Vector& y) {

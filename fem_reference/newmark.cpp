@@ -1,3 +1,4 @@
+#include "fem_reference/element_table.hpp"
 #include "fem_reference/newton.hpp"
 #include "fem_reference/run.hpp"
 
@@ -63,7 +64,9 @@ template <int dim> double time_step(const Run<dim>& run) {
 
 template <int dim> void run_newmark(Run<dim>& run) {
   State& state = run.state;
-  const ElementTable<dim> table(run.discretisation, run.law, run.problem.thickness);
+  ElasticPoints<dim> points(*run.elastic);
+  const ElementTable<dim, ElasticPoints<dim>> table(run.discretisation, points,
+                                                    run.problem.thickness);
   dealii::SparseMatrix<double> M;
   M.reinit(table.sparsity());
   table.consistent_mass(run.problem.material.rho0, M);

@@ -17,7 +17,7 @@ template <int dim> std::vector<char> mask(const Prescribed<dim>& prescribed, uns
 }  // namespace
 
 template <int dim>
-Newton<dim>::Newton(const ElementTable<dim>& table, const Prescribed<dim>& prescribed,
+Newton<dim>::Newton(const TangentForce& table, const Prescribed<dim>& prescribed,
                     const Options& options, double tolerance, bool direct, double relative)
     : m_table(table), m_prescribed(prescribed), m_options(options), m_tolerance(tolerance),
       m_given(mask(prescribed, table.sparsity().n_rows())),

@@ -2,7 +2,7 @@
 // Newton's method for one load or time step.
 
 #include "fem_reference/boundary.hpp"
-#include "fem_reference/element_table.hpp"
+#include "fem_reference/internal_force.hpp"
 #include "fem_reference/linear_solver.hpp"
 #include "fem_reference/state.hpp"
 
@@ -23,8 +23,8 @@ struct Inertia {
 template <int dim> class Newton {
  public:
   /// `direct`: which linear solver; `relative`: tolerance of the iterative one.
-  Newton(const ElementTable<dim>& table, const Prescribed<dim>& prescribed,
-         const Options& options, double tolerance, bool direct, double relative);
+  Newton(const TangentForce& table, const Prescribed<dim>& prescribed, const Options& options,
+         double tolerance, bool direct, double relative);
 
   /// state.u in: last solution, out: new one; state.internal is renewed; state.external must be
   /// that of the new step. Returns the number of linear solves. Throws SolveError (step and
@@ -41,7 +41,7 @@ template <int dim> class Newton {
   void check(const State& state, long bad_element) const;
   void renew_tangent(State& state, const Inertia* inertia);
 
-  const ElementTable<dim>& m_table;
+  const TangentForce& m_table;
   const Prescribed<dim>& m_prescribed;
   const Options& m_options;
   double m_tolerance;

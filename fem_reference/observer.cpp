@@ -40,12 +40,12 @@ std::span<const double> flat(const std::vector<Vec3>& values) {
 
 template <int dim>
 Observer<dim>::Observer(const scene::Problem& problem, const scene::RunRequest& request,
-                        const Discretisation<dim>& discretisation, const Hyperelastic<dim>& law,
-                        const Prescribed<dim>& prescribed, bool free_body,
-                        scene::Result& result)
-    : m_problem(problem), m_request(request), m_discretisation(discretisation), m_law(law),
-      m_result(result), m_quantities(problem, discretisation, law, prescribed),
-      m_free_body(free_body) {
+                        const Discretisation<dim>& discretisation,
+                        const NodalFields<dim>& fields, const Prescribed<dim>& prescribed,
+                        bool free_body, scene::Result& result)
+    : m_problem(problem), m_request(request), m_discretisation(discretisation),
+      m_fields(fields), m_result(result),
+      m_quantities(problem, discretisation, fields, prescribed), m_free_body(free_body) {
   const scene::Mesh& mesh = discretisation.mesh();
   const std::vector<int> order = discretisation.cell_shape().vtk_order();
   m_vtk_offsets.push_back(0);
@@ -67,6 +67,7 @@ template <int dim> void Observer<dim>::start(const State& state) {
     std::vector<std::string> columns{"t_s"};
     if (m_mass) columns.push_back("kinetic_energy_J");
     columns.push_back("internal_energy_J");
+    if (m_fields.plastic()) columns.push_back("plastic_work_J");
     columns.push_back("external_work_J");
     for (const std::string& c : m_quantities.columns()) columns.push_back(c);
     m_history = scene::HistoryWriter(m_request.out / "history.csv", columns);
@@ -107,9 +108,17 @@ template <int dim> void Observer<dim>::row(const State& state) {
     m_mass(state.v, Mv);
     kinetic = 0.5 * (state.v * Mv);
     values.push_back(kinetic);
-    follow_invariants(state, kinetic, internal);
+    m_kinetic_max = std::max(m_kinetic_max, kinetic);
+    follow_momenta(state);
   }
   values.push_back(internal);
+  if (m_fields.plastic()) {
+    values.push_back(m_fields.plastic_work());
+    m_result.quantities["gauss_plastic_strain_max"] = m_fields.peak_plastic_strain();
+  }
+  if (m_mass || m_fields.plastic()) {
+    follow_energy(kinetic + internal + m_fields.plastic_work(), state.external_work);
+  }
   values.push_back(state.external_work);
   const std::vector<double> quantities = m_quantities.evaluate(state, m_mass);
   for (std::size_t k = 0; k < quantities.size(); ++k) {
@@ -121,8 +130,14 @@ template <int dim> void Observer<dim>::row(const State& state) {
   m_result.steps = state.step;
 }
 
-template <int dim>
-void Observer<dim>::follow_invariants(const State& state, double kinetic, double internal) {
+template <int dim> void Observer<dim>::follow_energy(double total, double external_work) {
+  const double energy = total - external_work;
+  if (m_rows_done == 0) m_energy_0 = energy;
+  m_energy_change = std::max(m_energy_change, std::abs(energy - m_energy_0));
+  m_energy_scale = std::max(m_energy_scale, total);
+}
+
+template <int dim> void Observer<dim>::follow_momenta(const State& state) {
   State::Vector Mv(state.v.size());
   m_mass(state.v, Mv);
   std::array<Vec3, 2> momentum{Vec3::Zero(), Vec3::Zero()};
@@ -133,25 +148,17 @@ void Observer<dim>::follow_invariants(const State& state, double kinetic, double
     momentum[0] += p;
     momentum[1] += (mesh.nodes[n] + m_discretisation.node_value(state.u, node)).cross(p);
   }
-  const double energy = kinetic + internal - state.external_work;
-  if (m_rows_done == 0) {
-    m_momentum_0 = momentum;
-    m_energy_0 = energy;
-  }
+  if (m_rows_done == 0) m_momentum_0 = momentum;
   for (int k = 0; k < 2; ++k) {
     const Vec3 change = momentum[k] - m_momentum_0[k];
     if (!(change.norm() <= m_momentum_change[k].norm())) m_momentum_change[k] = change;
   }
-  m_energy_change = std::max(m_energy_change, std::abs(energy - m_energy_0));
-  m_energy_scale = std::max(m_energy_scale, kinetic + internal);
-  m_kinetic_max = std::max(m_kinetic_max, kinetic);
 }
 
 template <int dim> void Observer<dim>::frame(const State& state) {
   m_last_frame = state.t;
   if (!m_frames.active()) return;
   const std::vector<Vec3> u = m_discretisation.at_nodes(state.u);
-  const NodalStress stress = nodal_stress(m_discretisation, m_law, state.u);
   std::vector<Vec3> x = m_discretisation.mesh().nodes, v, error;
   for (std::size_t n = 0; n < x.size(); ++n) {
     if (m_problem.exact_displacement) {
@@ -159,8 +166,11 @@ template <int dim> void Observer<dim>::frame(const State& state) {
     }
     x[n] += u[n];
   }
-  std::vector<scene::FrameField> fields{{"displacement", 3, flat(u)},
-                                        {"von_mises", 1, stress.von_mises}};
+  const std::vector<std::string> names = m_fields.frame_fields();
+  std::vector<std::vector<double>> scalars;
+  for (const std::string& name : names) scalars.push_back(m_fields.at_nodes(name, state.u));
+  std::vector<scene::FrameField> fields{{"displacement", 3, flat(u)}};
+  for (std::size_t k = 0; k < names.size(); ++k) fields.push_back({names[k], 1, scalars[k]});
   if (m_mass) {
     v = m_discretisation.at_nodes(state.v);
     fields.push_back({"velocity", 3, flat(v)});
@@ -176,14 +186,15 @@ template <int dim> void Observer<dim>::finish(const State& state, bool sound) {
   if (sound) {
     if (m_last_row < state.t) row(state);
     if (m_last_frame < state.t) frame(state);
-    m_result.samples = sample(m_discretisation, m_law, m_problem.thickness, state.u, state.v);
+    m_result.samples =
+        sample(m_discretisation, m_fields, m_problem.thickness, state.u, state.v);
     m_result.field = std::make_shared<MeshField>(m_discretisation.mesh(),
                                                  m_discretisation.at_nodes(state.u));
   }
-  if (!m_mass) return;
   if (m_energy_scale > 0) {
     m_result.invariants["energy_drift"] = m_energy_change / m_energy_scale;
   }
+  if (!m_mass) return;
   const scene::Mesh& mesh = m_discretisation.mesh();
   Vec3 low = mesh.nodes.front(), high = low;
   for (const Vec3& X : mesh.nodes) {

@@ -13,15 +13,17 @@ namespace concord::fem {
 /// Watches the states of one run. History rows and frames come at the first state at or after
 /// their times.
 ///
-/// Invariants (dynamic runs only), maxima over the history rows:
-///  energy_drift = |T + W - W_ext - (T + W)_0| / max(T + W), T kinetic, W strain energy;
+/// Invariants (dynamic runs and plastic static ones), maxima over the history rows:
+///  energy_drift = |T + W + D - W_ext - (T + W)_0| / max(T + W + D), T kinetic, W strain
+///  energy, D plastic work. In static runs W_ext is summed by the trapezoidal rule over the
+///  load steps, whose error, of second order in the step, the drift then shows;
 ///  linear_momentum_drift = |p - p_0| / sqrt(2 m max T), p = sum M v;
 ///  angular_momentum_drift = |l - l_0| / (D sqrt(2 m max T)), l = sum x x M v, D the diagonal
 ///  of the body's box: both only for bodies without loads and prescribed displacements.
 template <int dim> class Observer {
  public:
   Observer(const scene::Problem& problem, const scene::RunRequest& request,
-           const Discretisation<dim>& discretisation, const Hyperelastic<dim>& law,
+           const Discretisation<dim>& discretisation, const NodalFields<dim>& fields,
            const Prescribed<dim>& prescribed, bool free_body, scene::Result& result);
 
   /// The operators of the integrator; to be set before start(). `mass` empty: statics.
@@ -38,12 +40,13 @@ template <int dim> class Observer {
  private:
   void row(const State& state);
   void frame(const State& state);
-  void follow_invariants(const State& state, double kinetic, double internal);
+  void follow_energy(double total, double external_work);
+  void follow_momenta(const State& state);
 
   const scene::Problem& m_problem;
   const scene::RunRequest& m_request;
   const Discretisation<dim>& m_discretisation;
-  const Hyperelastic<dim>& m_law;
+  const NodalFields<dim>& m_fields;
   scene::Result& m_result;
   Quantities<dim> m_quantities;
   const InternalForce* m_force = nullptr;

@@ -49,6 +49,14 @@ std::vector<scene::ParameterInfo> parameter_table() {
            "(J^2 - 1 "
            "- 2 ln J), with the scene's constants, for figures published with it (3D, plane "
            "strain)"),
+      word("quadrature", "auto", {"auto", "3"},
+           "points of the internal force: 3 is the 3-point rule of P2 in the plane (T6 of the "
+           "Continuum Bond Method paper); auto: 3 there with plastic materials, else p+1 Gauss "
+           "points a direction (Q) or the rule exact to degree 2p-1 (P)"),
+      word("yield_measure", "kirchhoff", {"kirchhoff", "cauchy"},
+           "plastic materials: stress whose equivalent reaches tau_y of Eq. (24) of the "
+           "Continuum Bond Method paper; cauchy is CalculiX's choice, and its tangent is not "
+           "symmetric"),
       number("dt", "s", "0", 0, 1e300, ">= 0",
              "time step; 0: from dt_factor (explicit) or courant (newmark)"),
       number(
@@ -74,12 +82,27 @@ std::vector<scene::ParameterInfo> parameter_table() {
   };
 }
 
+/// The 3-point rule, asked for or by default.
+bool pick_three_points(const scene::Problem& problem, const Options& options,
+                       const std::string& asked) {
+  const bool fits = problem.dim() == 2 && options.element == "P2";
+  if (asked != "auto" && !fits) {
+    throw InputError({problem.file.string()}, "fem.quadrature", asked,
+                     "auto, or element P2 in a plane problem");
+  }
+  return fits && (asked != "auto" || problem.material.plastic());
+}
+
 Solver pick_solver(const scene::Problem& problem, const Options& options,
                    const std::string& asked) {
   const bool simplex = options.shape == scene::CellShape::simplex;
   const auto reject = [&](const std::string& allowed) -> Solver {
     throw InputError({problem.file.string()}, "fem.solver", asked, allowed);
   };
+  if (problem.material.plastic() &&
+      (!problem.is_static || asked == "explicit" || asked == "newmark")) {
+    return reject("static, in a static scene: fem solves plastic scenes quasi-statically");
+  }
   if (asked == "auto") {
     if (problem.is_static) return Solver::statics;
     return simplex ? Solver::newmark : Solver::explicit_leapfrog;
@@ -99,8 +122,10 @@ Solver pick_solver(const scene::Problem& problem, const Options& options,
 const scene::MethodInfo& method_info() {
   static const scene::MethodInfo info{"fem", "Finite elements (reference, deal.II)",
                                       "total-Lagrangian displacement elements; laws Eqs. "
-                                      "(51)-(53) of the Delaunay paper and St "
-                                      "Venant-Kirchhoff; fem_reference/README.md",
+                                      "(51)-(53) of the Delaunay paper, St "
+                                      "Venant-Kirchhoff, J2 plasticity (Algorithm 2 of the "
+                                      "Continuum Bond Method paper, quasi-static); "
+                                      "fem_reference/README.md",
                                       parameter_table()};
   return info;
 }
@@ -117,6 +142,13 @@ Options read_options(const scene::Problem& problem, const scene::RunRequest& req
                     : linear == "cg"   ? LinearChoice::conjugate_gradients
                                        : LinearChoice::automatic;
   o.split_law = settings.word("law") != "scene";
+  if (o.split_law && problem.material.plastic()) {
+    throw InputError({problem.file.string()}, "fem.law", settings.word("law"),
+                     "scene, for a plastic material");
+  }
+  o.three_points = pick_three_points(problem, o, settings.word("quadrature"));
+  o.yield_measure = settings.word("yield_measure") == "cauchy" ? YieldMeasure::cauchy
+                                                               : YieldMeasure::kirchhoff;
   o.dt = settings.number("dt");
   o.dt_factor = settings.number("dt_factor");
   o.courant = settings.number("courant");

@@ -1,7 +1,5 @@
 #include "fem_reference/quantities.hpp"
 
-#include "fem_reference/sampling.hpp"
-
 #include <deal.II/base/quadrature_lib.h>
 
 #include <Eigen/Geometry>
@@ -62,8 +60,8 @@ std::vector<double> shape_integrals(const LagrangeShape& shape, bool simplex,
 template <int dim>
 Quantities<dim>::Quantities(const scene::Problem& problem,
                             const Discretisation<dim>& discretisation,
-                            const Hyperelastic<dim>& law, const Prescribed<dim>& prescribed)
-    : m_problem(problem), m_discretisation(discretisation), m_law(law),
+                            const NodalFields<dim>& fields, const Prescribed<dim>& prescribed)
+    : m_problem(problem), m_discretisation(discretisation), m_fields(fields),
       m_prescribed(prescribed) {
   const MeshField field(discretisation.mesh(), discretisation.mesh().nodes);
   for (const Quantity& quantity : problem.quantities) {
@@ -79,13 +77,13 @@ template <int dim> void Quantities<dim>::name(const Quantity& q) {
     unit = "N";
   else if (field == "velocity")
     unit = "m_s";
-  else if (field == "von_mises" || field == "pressure")
+  else if (field == "von_mises" || field == "pressure" || field == "kirchhoff_mises")
     unit = "Pa";
   const bool scalar =
       q.kind == QuantityKind::maximum || (q.kind == QuantityKind::average && !is_vector(field));
   if (scalar) {
     m_keys.push_back(q.name);
-    m_columns.push_back(q.name + "_" + unit);
+    m_columns.push_back(field == "plastic_strain" ? q.name : q.name + "_" + unit);
     return;
   }
   for (int i = 0; i < dim; ++i) {
@@ -206,18 +204,11 @@ std::vector<Vec3> Quantities<dim>::vector_field(const std::string& field,
 }
 
 template <int dim>
-std::vector<double> Quantities<dim>::scalar_field(const std::string& field,
-                                                  const State& state) const {
-  const NodalStress stress = nodal_stress(m_discretisation, m_law, state.u);
-  return field == "pressure" ? stress.pressure : stress.von_mises;
-}
-
-template <int dim>
 double Quantities<dim>::maximum(const Probe& probe, const State& state) const {
   const std::string& field = probe.quantity->field;
   double most = -1e300;
-  if (field == "von_mises" || field == "pressure") {
-    const auto values = scalar_field(field, state);
+  if (!is_vector(field) && field != "unbalanced_force") {
+    const auto values = m_fields.at_nodes(field, state.u);
     for (const Index n : probe.nodes) most = std::max(most, values[n]);
     return most;
   }
@@ -245,7 +236,7 @@ std::vector<double> Quantities<dim>::evaluate(const State& state,
       continue;
     }
     if (q.kind == QuantityKind::average && !is_vector(q.field)) {
-      const auto values = scalar_field(q.field, state);
+      const auto values = m_fields.at_nodes(q.field, state.u);
       double sum = 0;
       for (std::size_t k = 0; k < probe.nodes.size(); ++k) {
         sum += probe.weights[k] * values[probe.nodes[k]];

@@ -3,7 +3,7 @@
 
 #include "fem_reference/boundary.hpp"
 #include "fem_reference/field.hpp"
-#include "fem_reference/hyperelastic.hpp"
+#include "fem_reference/nodal_fields.hpp"
 #include "fem_reference/state.hpp"
 
 #include <string>
@@ -19,7 +19,7 @@ namespace concord::fem {
 template <int dim> class Quantities {
  public:
   Quantities(const scene::Problem& problem, const Discretisation<dim>& discretisation,
-             const Hyperelastic<dim>& law, const Prescribed<dim>& prescribed);
+             const NodalFields<dim>& fields, const Prescribed<dim>& prescribed);
 
   /// Columns of history.csv ("tip_x_m") and keys of summary.json ("tip_x").
   const std::vector<std::string>& columns() const { return m_columns; }
@@ -38,12 +38,11 @@ template <int dim> class Quantities {
   void choose_nodes(const scene::Quantity& quantity, Probe& probe) const;
   void name(const scene::Quantity& quantity);
   std::vector<Vec3> vector_field(const std::string& name, const State& state) const;
-  std::vector<double> scalar_field(const std::string& name, const State& state) const;
   double maximum(const Probe& probe, const State& state) const;
 
   const scene::Problem& m_problem;
   const Discretisation<dim>& m_discretisation;
-  const Hyperelastic<dim>& m_law;
+  const NodalFields<dim>& m_fields;
   const Prescribed<dim>& m_prescribed;
   std::vector<Probe> m_probes;
   std::vector<std::string> m_columns, m_keys;

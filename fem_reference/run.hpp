@@ -10,13 +10,14 @@ template <int dim> struct Run {
   const scene::RunRequest& request;
   const Options& options;
   const Discretisation<dim>& discretisation;
-  const Hyperelastic<dim>& law;
   const Prescribed<dim>& prescribed;
   const Loads<dim>& loads;
   Observer<dim>& observer;
   scene::Result& result;
   State& state;
-  double started = 0;  ///< clock at the start of the set-up [s]
+  const Hyperelastic<dim>* elastic;  ///< one of the two is there
+  PlasticPoints<dim>* plastic;       ///< in statics only
+  double started = 0;                ///< clock at the start of the set-up [s]
 
   bool depends_on_time() const {
     return prescribed.depends_on_time() || loads.depends_on_time();

@@ -9,7 +9,7 @@
 namespace concord::fem {
 
 template <int dim>
-scene::Samples sample(const Discretisation<dim>& discretisation, const Hyperelastic<dim>& law,
+scene::Samples sample(const Discretisation<dim>& discretisation, const NodalFields<dim>& law,
                       double thickness, const dealii::Vector<double>& u,
                       const dealii::Vector<double>& v) {
   const dealii::FESystem<dim>& element = discretisation.element();
@@ -61,8 +61,8 @@ NodalStress nodal_stress(const Discretisation<dim>& discretisation,
   std::vector<double> N(n);
   std::vector<std::vector<Vec3>> dN(n, std::vector<Vec3>(n));
   for (int at = 0; at < n; ++at) shape.evaluate(shape.unit_nodes()[at], N, dN[at]);
-  NodalStress out{std::vector<double>(mesh.nodes.size(), 0),
-                  std::vector<double>(mesh.nodes.size(), 0)};
+  const std::vector<double> zero(mesh.nodes.size(), 0);
+  NodalStress out{zero, zero, zero};
   std::vector<int> count(mesh.nodes.size(), 0);
   for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
     const Index* nodes = &mesh.cells[c * n];
@@ -79,9 +79,12 @@ NodalStress nodal_stress(const Discretisation<dim>& discretisation,
         for (int j = 0; j < dim; ++j) F[i][j] = H(i, j) + (i == j ? 1 : 0);
       }
       dealii::SymmetricTensor<2, 3> sigma;
-      const bool sound = law.cauchy(F, sigma);
+      dealii::Tensor<2, 3> F3;
+      const bool sound = law.cauchy(F, sigma) && law.complete(F, F3);
       const double nan = std::nan("");
-      out.von_mises[nodes[at]] += sound ? std::sqrt(1.5) * deviator(sigma).norm() : nan;
+      const double mises = sound ? std::sqrt(1.5) * deviator(sigma).norm() : nan;
+      out.von_mises[nodes[at]] += mises;
+      out.kirchhoff_mises[nodes[at]] += sound ? mises * determinant(F3) : nan;
       out.pressure[nodes[at]] += sound ? -trace(sigma) / 3 : nan;
       ++count[nodes[at]];
     }
@@ -90,12 +93,13 @@ NodalStress nodal_stress(const Discretisation<dim>& discretisation,
     if (count[k] == 0) continue;
     out.von_mises[k] /= count[k];
     out.pressure[k] /= count[k];
+    out.kirchhoff_mises[k] /= count[k];
   }
   return out;
 }
 
 #define CONCORD_INSTANTIATE(dim)                                                               \
-  template scene::Samples sample<dim>(const Discretisation<dim>&, const Hyperelastic<dim>&,    \
+  template scene::Samples sample<dim>(const Discretisation<dim>&, const NodalFields<dim>&,     \
                                       double, const dealii::Vector<double>&,                   \
                                       const dealii::Vector<double>&);                          \
   template NodalStress nodal_stress<dim>(const Discretisation<dim>&, const Hyperelastic<dim>&, \

@@ -2,7 +2,7 @@
 // Solution at Gauss points and stresses at nodes.
 
 #include "fem_reference/discretisation.hpp"
-#include "fem_reference/hyperelastic.hpp"
+#include "fem_reference/nodal_fields.hpp"
 #include "scene/method.hpp"
 
 namespace concord::fem {
@@ -10,7 +10,7 @@ namespace concord::fem {
 /// X, u, v (empty if v is), F and weights at Gauss points with p+2 points a direction: exact
 /// for squares of errors to degree 2p+3 on affine cells.
 template <int dim>
-scene::Samples sample(const Discretisation<dim>& discretisation, const Hyperelastic<dim>& law,
+scene::Samples sample(const Discretisation<dim>& discretisation, const NodalFields<dim>& law,
                       double thickness, const dealii::Vector<double>& u,
                       const dealii::Vector<double>& v);
 
@@ -18,6 +18,7 @@ scene::Samples sample(const Discretisation<dim>& discretisation, const Hyperelas
 struct NodalStress {
   std::vector<double> von_mises;  ///< sqrt(3/2 s:s), s the deviator of the Cauchy stress [Pa]
   std::vector<double> pressure;   ///< -tr(sigma)/3 [Pa]
+  std::vector<double> kirchhoff_mises;  ///< J von Mises stress, of tau = J sigma [Pa]
 };
 template <int dim>
 NodalStress nodal_stress(const Discretisation<dim>& discretisation,

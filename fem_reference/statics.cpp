@@ -1,3 +1,4 @@
+#include "fem_reference/element_table.hpp"
 #include "fem_reference/newton.hpp"
 #include "fem_reference/run.hpp"
 
@@ -55,6 +56,7 @@ void solve_part(Run<dim>& run, Newton<dim>& newton, const LoadStep& step, double
     state = before;
     throw;
   }
+  if (run.plastic != nullptr) run.plastic->commit();
   working_force(run, MassProduct(), work_force);
   for (unsigned i = 0; i < state.u.size(); ++i) {
     state.external_work += 0.5 * (work_force[i] + last_force[i]) * (state.u[i] - before.u[i]);
@@ -86,19 +88,19 @@ template <int dim> void solve_step(Run<dim>& run, Newton<dim>& newton, const Loa
   }
 }
 
-}  // namespace
-
-template <int dim> void run_statics(Run<dim>& run) {
+template <int dim, class Law> void run_with(Run<dim>& run, Law& law) {
   run.prescribed.require_support();
   State& state = run.state;
-  const ElementTable<dim> table(run.discretisation, run.law, run.problem.thickness);
+  const ElementTable<dim, Law> table(run.discretisation, law, run.problem.thickness);
   run.observer.connect(table, MassProduct());
+  const bool direct = use_direct(run) || !table.symmetric();
   const double tolerance =
       run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
-  Newton<dim> newton(table, run.prescribed, run.options, tolerance, use_direct(run), 1e-10);
+  Newton<dim> newton(table, run.prescribed, run.options, tolerance, direct, 1e-10);
   if (const long bad = table.force(state.u, state.internal); bad >= 0) {
     throw SolveError("det F", 0, 0, bad, "in the initial state");
   }
+  if (run.plastic != nullptr) run.plastic->commit();
   state.external = state.internal;  // the loads under which the initial state is at rest
   run.observer.start(state);
   run.result.setup_s = now() - run.started;
@@ -120,6 +122,14 @@ template <int dim> void run_statics(Run<dim>& run) {
   }
   run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
   run.observer.finish(state, true);
+}
+
+}  // namespace
+
+template <int dim> void run_statics(Run<dim>& run) {
+  if (run.plastic != nullptr) return run_with(run, *run.plastic);
+  ElasticPoints<dim> points(*run.elastic);
+  run_with(run, points);
 }
 
 template void run_statics<2>(Run<2>&);
