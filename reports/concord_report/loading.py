@@ -95,16 +95,15 @@ def _check(path, data):
                              f"{row.get('method')!r}, expected text")
 
 
-PAIR, WINDOW = "[low, high]", "{x: [low, high], y: [low, high]}"
+PAIR, WINDOW = "[low, high]", "{x: [low, high], y: [low, high]} or one of the two"
 
 
 def _is_pair(value):
     return isinstance(value, list) and len(value) == 2 and None not in map(number, value) and value[0] < value[1]
 
 
-def _is_window(value, both):
-    return isinstance(value, dict) and set(value) <= {"x", "y"} and all(map(_is_pair, value.values())) \
-        and len(value) >= (2 if both else 1)
+def _is_window(value):
+    return isinstance(value, dict) and set(value) <= {"x", "y"} and all(map(_is_pair, value.values()))
 
 
 def _is_table_list(value):
@@ -113,14 +112,14 @@ def _is_table_list(value):
 
 # list and key of an entry: (what is allowed in words, the test); a missing key is fine everywhere
 ALLOWED = {
-    ("plots", "inset"): (WINDOW, lambda v: _is_window(v, True)),
+    ("plots", "inset"): (WINDOW, _is_window),
     ("plots", "baseline"): ("a selection {method, variant, ...} or a list of them",
                             lambda v: isinstance(v, dict) or _is_table_list(v)),
     ("plots", "resolutions"): ("a list of numbers",
                                lambda v: isinstance(v, list) and None not in map(number, v)),
     ("pictures", "panels"): ("a list of {method, variant, ...}", _is_table_list),
     ("pictures", "range"): (f'"common" or {PAIR}', lambda v: v == "common" or _is_pair(v)),
-    ("pictures", "crop"): (f"{WINDOW}, or one of the two", lambda v: _is_window(v, False)),
+    ("pictures", "crop"): (WINDOW, _is_window),
 }
 
 

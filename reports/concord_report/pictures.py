@@ -301,9 +301,9 @@ def panel_width(job, rows):
 def columns(whole, count):
     """How many panels stand side by side: the author's number; one row up to four, else whole rows of
     three or four where there are."""
-    wanted = whole.get("columns")
-    if isinstance(wanted, int) and wanted > 0:
-        return min(wanted, count)
+    wanted = number(whole.get("columns"))
+    if wanted and wanted >= 1:
+        return min(int(wanted), count)
     if count <= 4:
         return count
     return next((n for n in (3, 4, 5) if count % n == 0), 4)

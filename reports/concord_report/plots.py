@@ -22,12 +22,14 @@ MODULES = ("draw", "draw_labels", "draw_triangles", "draw_map", "draw_inset", "s
 def _against(study, cases, plot, abscissa):
     """Curves of the plot's quantity against `abscissa` (a path), means over seeds with spread."""
     path, curves = plot["quantity"], []
+    across, up = (number(plot.get(f"{along}_scale")) or 1.0 for along in "xy")
     for case in chosen(cases, plot):
         points = []
         for level in case.levels:
             x, y = level.mean(abscissa), level.mean(path)
             if x and y and x > 0 and y > 0:
-                points.append((x, y, *(level.spread(path) or (y, y)), level))
+                ends = level.spread(path) or (y, y)
+                points.append((across * x, up * y, up * ends[0], up * ends[1], level))
         if not points:
             continue
         fit = fit_of(study, case, path) or {}
@@ -82,15 +84,24 @@ def history(study, cases, plot):
     rows = [c.pop("row") for c in curves]
     over = time_name(rows)
     times = "s" if over == "time" else "s for explicit runs" if "time" in over else ""
-    if times == "s":
+    if number(plot.get("x_scale")):
+        curves, times = _times(curves, "x", plot["x_scale"]), ""
+    elif times == "s":
         curves, times = scaled(curves, "x", "s")
-    curves, unit = scaled(curves, "y", unit)
+    if number(plot.get("y_scale")):
+        curves, unit = _times(curves, "y", plot["y_scale"]), ""
+    else:
+        curves, unit = scaled(curves, "y", unit)
     ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in curves)
     ends += f" {unit}" if unit else ""
     return {"scales": ["linear", "linear"], "xlabel": f"{over} [{times}]" if times else over,
             "ylabel": f"{name} [{unit}]" if unit else name,
             "curves": curves, "title": plot.get("title") or f"{capital(name)} over {over}",
             "note": note, "triangles": [], "alt": f"Plot of {name} over {over}. Ranges: {ends}."}
+
+
+def _times(curves, along, factor):
+    return [{**c, along: [v * factor for v in c[along]]} for c in curves]
 
 
 def plot_specs(study, cases):
@@ -105,6 +116,8 @@ def plot_specs(study, cases):
         spec = make(study, cases, plot)
         if not isinstance(spec, str) and (spec.get("broken") or any(any(c.get("broken") or []) for c in spec["curves"])):
             spec["note"] = " ".join(filter(None, (spec.get("note"), f"{balance.SIGN} {balance.WORDS}.")))
+        if not isinstance(spec, str):
+            spec |= {f"{along}label": plot[f"{along}_label"] for along in "xy" if plot.get(f"{along}_label")}
         out.append((plot, spec))
     return out
 

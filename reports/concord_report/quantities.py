@@ -29,8 +29,6 @@ NAMES = {  # name: (text, unit); norms.hpp defines the errors
     "t_s": ("time", "s"),
     "perturb": ("perturbation of the particles", "h"),
     "dt": ("time step", "s"),
-    "plastic_strain_difference": ("relative L2 difference of equivalent plastic strain", ""),
-    "kirchhoff_mises_difference": ("relative L2 difference of equivalent Kirchhoff stress", ""),
 }
 
 FIELDS = {  # point fields of the frames: (text, unit)
@@ -45,6 +43,7 @@ FIELDS = {  # point fields of the frames: (text, unit)
     "damage": ("damage", ""),
 }
 
+COMPARED = ("plastic_strain", "kirchhoff_mises", "von_mises", "pressure", "energy_density", "damage")
 
 SEEN = {}  # units that history.csv headers tell of scene quantities: "tip_z" -> "m"
 
@@ -63,6 +62,11 @@ def name_and_unit(path):
     last = path.split(".")[-1]
     if last in NAMES:
         return NAMES[last]
+    compared = next((f for f in COMPARED if path.startswith("errors.") and last.startswith(f + "_")), None)
+    if compared:  # by [[compare]] of a study: errors.FIELD_NAME
+        name = last.removeprefix(compared + "_")
+        return (f"relative L2 difference of {FIELDS[compared][0]}"
+                + ("" if name == "difference" else f", {_words(name)}"), "")
     for end, unit in UNITS:
         if last.endswith(end) and len(last) > len(end):
             return _words(last[: -len(end)]), unit

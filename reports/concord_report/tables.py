@@ -204,7 +204,9 @@ def runs_table(cases):
 
 def _remark(row):
     """Why a run failed, or was compared with nothing."""
-    return str(row.get("error") or dig(row, "comparison.reason") or "")
+    compared = (row.get("comparisons") or {}).values()
+    reasons = [str(c["reason"]) for c in compared if isinstance(c, dict) and c.get("reason")]
+    return str(row.get("error") or "; ".join(dict.fromkeys(reasons)))
 
 
 MACHINE = (("processor", "machine.cpu"), ("SIMD", "machine.simd"), ("threads", "machine.threads"),

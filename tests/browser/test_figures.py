@@ -66,6 +66,14 @@ class Curves(unittest.TestCase):
     def test_missing_column_is_told(self):
         self.assertIn("pull_x", self.spec(y="pull_x"))
 
+    def test_half_an_inset_shows_what_passes(self):
+        scales = {"x_scale": 500.0, "y_scale": 1}
+        self.assertEqual(self.spec(**scales, inset={"x": [0.4, 1.1]})["inset"][0], [0.4, 1.1])
+        low, high = self.spec(**scales, inset={"x": [0.4, 1.1]})["inset"][1]  # 2 N to 7 N and some room
+        self.assertTrue(1.5 < low < 2 and 7 < high < 7.5)
+        self.assertIsNone(self.spec(inset={})["inset"])
+        self.assertIsNone(self.spec(inset={"x": [90, 91]})["inset"])
+
     def test_inset_is_drawn_once_more(self):
         plain, zoomed = (drawing(self.spec(**more)) for more in ({}, {"inset": {"x": [0, 1], "y": [4, 6]}}))
         self.assertEqual(zoomed.count('class="curve" data-case="-1"'),
@@ -142,6 +150,26 @@ class Balance(unittest.TestCase):
         spec = spec_of(rows, {"kind": "convergence", "quantity": "errors.e"})
         self.assertEqual(spec["curves"][0]["broken"], [False, True])
         self.assertIn("does not close", spec["note"])
+
+
+class Words(unittest.TestCase):
+    def test_differences_to_a_reference(self):
+        self.assertEqual(quantities.axis("errors.plastic_strain_difference"),
+                         "relative L2 difference of equivalent plastic strain")
+        self.assertEqual(quantities.axis("errors.kirchhoff_mises_explicit"),
+                         "relative L2 difference of equivalent Kirchhoff stress, explicit")
+        self.assertEqual(quantities.field_name("kirchhoff_mises_difference"),
+                         ("difference in equivalent Kirchhoff stress", "Pa"))
+
+    def test_labels_and_factors_of_any_plot(self):
+        rows = [row("cbm", "", 0.1, resolution=n, h=1 / n, wall_s=1.0) for n in (4, 8)]
+        spec = spec_of(rows, {"kind": "cost", "quantity": "errors.e", "y_scale": 100, "y_label": "error [%]"})
+        self.assertEqual((spec["ylabel"], spec["curves"][0]["y"]), ("error [%]", [10.0, 10.0]))
+
+    def test_a_run_that_was_compared_with_nothing_tells_why(self):
+        one = study([row("cbm", "", 1.0, comparisons={"difference": {"reason": "the reference was not run"}})])
+        made = tables.runs_table(cases.cases_of(one))
+        self.assertEqual(made["rows"][0][-1]["text"], "the reference was not run")
 
 
 class Static(unittest.TestCase):

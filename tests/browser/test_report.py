@@ -297,7 +297,7 @@ class BadInput(unittest.TestCase):
         self.refused('{"name": "one", "claims": [{"id": "a", "verdict": "pass"}]}', "claims[0]", "'statement'")
 
     def test_broken_figures(self):
-        for entry, *words in (('"plots": [{"kind": "curve", "inset": {"x": [1, 2]}}]', "plots[0]", "'inset'"),
+        for entry, *words in (('"plots": [{"kind": "curve", "inset": {"x": [2, 1]}}]', "plots[0]", "'inset'"),
                               ('"plots": [{"kind": "sweep", "baseline": ["cbm"]}]', "'baseline'", "selection"),
                               ('"pictures": [{"range": [3, 2]}]', "'range'", '"common"'),
                               ('"pictures": [{}, {"panels": [{"crop": {"z": [0, 1]}}]}]', "pictures[1]", "'crop'")):
