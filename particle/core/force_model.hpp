@@ -60,8 +60,10 @@ class ForceModel {
   /// from P_33 = 0.
   virtual void gradients(std::span<const double> u, std::span<Mat3> H) = 0;
 
-  /// K = -df/du (without viscosity) over dim*n unknowns (particle*dim + component) at u [N/m].
-  virtual Eigen::SparseMatrix<double> tangent(std::span<const double> u) = 0;
+  using Stiffness = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  /// K = -df/du (without viscosity) over dim*n unknowns (particle*dim + component) at u [N/m];
+  /// consistent with the return mapping. Structurally symmetric; valid until the next call.
+  virtual const Stiffness& tangent(std::span<const double> u) = 0;
 
   /// Whether the force is the gradient of a potential, so that the tangent is symmetric.
   virtual bool has_potential() const { return true; }

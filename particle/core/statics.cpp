@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/UmfPackSupport>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -46,11 +47,46 @@ int free_rigid_motions(const Body& body, const Constraints& constraints) {
 
 }  // namespace
 
+/// The free part of the tangent and its factors. The pattern is found once: entry k of the
+/// (column by column) matrix comes from value source[k] of the model's (row by row) one.
 struct Statics::Factors {
   Eigen::CholmodSupernodalLLT<Sparse> cholesky;
   Eigen::UmfPackLU<Sparse> lu;
-  Sparse free_free, free_prescribed;
-  bool analysed = false, use_lu = false;
+  Sparse free_free;
+  std::vector<int> source;
+  Eigen::Index entries = -1;
+  bool cholesky_analysed = false, lu_analysed = false;
+
+  void take(const ForceModel::Stiffness& K, const std::vector<Index>& equation, Index free) {
+    if (K.nonZeros() != entries) build_pattern(K, equation, free);
+    for (std::size_t k = 0; k < source.size(); ++k)
+      free_free.valuePtr()[k] = K.valuePtr()[source[k]];
+  }
+
+ private:
+  void build_pattern(const ForceModel::Stiffness& K, const std::vector<Index>& equation,
+                     Index free) {
+    entries = K.nonZeros();
+    cholesky_analysed = lu_analysed = false;
+    source.clear();
+    std::vector<int> outer{0}, inner;
+    const int *begin = K.outerIndexPtr(), *column = K.innerIndexPtr();
+    for (int c = 0; c < K.rows(); ++c) {
+      if (equation[c] < 0) continue;
+      for (int k = begin[c]; k < begin[c + 1];
+           ++k) {  // structurally symmetric: row c as column
+        const int r = column[k];
+        if (equation[r] < 0) continue;
+        inner.push_back(equation[r]);
+        const int* place = std::lower_bound(column + begin[r], column + begin[r + 1], c);
+        source.push_back(static_cast<int>(place - column));
+      }
+      outer.push_back(static_cast<int>(inner.size()));
+    }
+    const std::vector<double> zero(inner.size(), 0.0);
+    free_free = Eigen::Map<const Sparse>(free, free, static_cast<Eigen::Index>(inner.size()),
+                                         outer.data(), inner.data(), zero.data());
+  }
 };
 
 Statics::Statics(const scene::Problem& problem, ForceModel& model,
@@ -112,42 +148,34 @@ bool Statics::try_displacement(const Column& trial, double t, double& residual) 
 /// `correction` holds the prescribed increments on entry when `lift`.
 void Statics::solve(const Column& right, Column& correction, bool lift) {
   const Body& body = m_model.body();
-  const Sparse K = m_model.tangent(m_u);
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd b(m_free), lifted = Eigen::VectorXd::Zero(m_free);
-  entries.reserve(K.nonZeros());
-  for (int c = 0; c < K.outerSize(); ++c) {
-    const double moved =
-        correction[static_cast<std::size_t>(c / body.dim) * body.stride + c % body.dim];
-    for (Sparse::InnerIterator it(K, c); it; ++it) {
-      const Index row = m_equation[it.row()], column = m_equation[c];
-      if (row < 0) continue;
-      if (column >= 0)
-        entries.emplace_back(row, column, it.value());
-      else if (lift)
-        lifted[row] += it.value() * moved;
-    }
-  }
-  for (Index a = 0; a < body.n; ++a) {
-    for (int i = 0; i < body.dim; ++i) {
-      const Index e = m_equation[a * body.dim + i];
-      if (e >= 0) b[e] = right[static_cast<std::size_t>(a) * body.stride + i] - lifted[e];
+  const ForceModel::Stiffness& K = m_model.tangent(m_u);
+  Eigen::VectorXd b(m_free), x;
+  const auto place = [&](Eigen::Index unknown) {
+    return static_cast<std::size_t>(unknown / body.dim) * body.stride + unknown % body.dim;
+  };
+  for (Eigen::Index r = 0; r < K.rows(); ++r) {
+    const Index e = m_equation[r];
+    if (e < 0) continue;
+    b[e] = right[place(r)];
+    if (!lift) continue;
+    for (ForceModel::Stiffness::InnerIterator it(K, r); it; ++it) {
+      if (m_equation[it.col()] < 0) b[e] -= it.value() * correction[place(it.col())];
     }
   }
   Factors& f = *m_factors;
-  f.free_free.resize(m_free, m_free);
-  f.free_free.setFromTriplets(entries.begin(), entries.end());
-  Eigen::VectorXd x;
+  f.take(K, m_equation, m_free);
   bool solved = false;
   if (m_model.has_potential()) {
-    if (!f.analysed) f.cholesky.analyzePattern(f.free_free);
-    f.analysed = true;
+    if (!f.cholesky_analysed) f.cholesky.analyzePattern(f.free_free);
+    f.cholesky_analysed = true;
     f.cholesky.factorize(f.free_free);
     solved = f.cholesky.info() == Eigen::Success;
     if (solved) x = f.cholesky.solve(b);
   }
   if (!solved) {
-    f.lu.compute(f.free_free);
+    if (!f.lu_analysed) f.lu.analyzePattern(f.free_free);
+    f.lu_analysed = true;
+    f.lu.factorize(f.free_free);
     if (f.lu.info() != Eigen::Success) throw BadState{"tangent stiffness (singular)", -1};
     x = f.lu.solve(b);
   }
@@ -192,7 +220,9 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
       return try_displacement(base, t, again);
     }
     if (!accepted) return give_up();
-    if (it > 1 && residual <= options.tolerance * m_scale && residual > 0.25 * before)
+    const bool polish = options.tolerance <= StaticsOptions().tolerance;
+    if (it > 1 && residual <= options.tolerance * m_scale &&
+        (!polish || residual > 0.25 * before))
       return true;
     if (residual == 0) return true;
     before = residual;

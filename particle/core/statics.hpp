@@ -12,8 +12,8 @@ namespace concord::particle {
 struct StaticsOptions {
   int load_steps = 1;
   /// Converged when |r| <= tolerance * scale over free components, scale the norm of all
-  /// internal forces (reactions included), or when r stagnates at round-off below 100 *
-  /// tolerance * scale.
+  /// internal forces (reactions included); at the default tolerance not before r stagnates at
+  /// round-off, below 100 * tolerance * scale.
   double tolerance = 1e-12;
   int most_iterations = 40;  ///< per load step
   int most_halvings = 10;    ///< of a load step that does not converge

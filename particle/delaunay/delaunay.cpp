@@ -182,9 +182,9 @@ PairTangent DelaunayModel::contact_tangent(std::size_t pair, std::span<const dou
   return t;
 }
 
-Eigen::SparseMatrix<double> DelaunayModel::tangent(std::span<const double> u) {
+const ForceModel::Stiffness& DelaunayModel::tangent(std::span<const double> u) {
   compute_gradients(u, Executor(1));
-  if (m_rows.begin.empty()) m_rows = directed_rows(m_body, m_pairs);
+  if (!m_tangent) m_tangent.emplace(m_body, directed_rows(m_body, m_pairs));
   std::vector<Moduli> moduli(m_body.n);
   for (Index a = 0; a < m_body.n; ++a)
     moduli[a] = m_constitution.tangent(a, tensor_at(m_H, m_body.dim, a));
@@ -193,7 +193,7 @@ Eigen::SparseMatrix<double> DelaunayModel::tangent(std::span<const double> u) {
     pairs.reserve(m_pairs.size());
     for (std::size_t k = 0; k < m_pairs.size(); ++k) pairs.push_back(contact_tangent(k, u));
   }
-  return assemble_tangent(m_body, m_rows, moduli, pairs);
+  return m_tangent->assemble(moduli, pairs);
 }
 
 }  // namespace concord::particle::delaunay

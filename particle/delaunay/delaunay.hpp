@@ -29,7 +29,7 @@ class DelaunayModel final : public ForceModel {
               const Executor& executor) override;
   Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
-  Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
+  const Stiffness& tangent(std::span<const double> u) override;
   bool viscous() const override { return m_viscosity.has_value(); }
   double viscous_damping_ratio(double omega_max) const override;
   std::size_t interactions() const override { return m_bonds.count; }
@@ -61,7 +61,7 @@ class DelaunayModel final : public ForceModel {
   double m_tangential_factor = 0;   ///< xi_t G
   bool m_contact = false;
   Bonds m_bonds;
-  GradientRows m_rows;  ///< made when the first tangent is asked for
+  std::optional<TangentAssembly> m_tangent;  ///< made when the first tangent is asked for
   std::optional<Viscosity> m_viscosity;
   std::vector<double> m_inverse_V;
   Column m_H, m_P, m_rate;

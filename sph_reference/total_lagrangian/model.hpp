@@ -4,8 +4,11 @@
 
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
+#include "particle/core/tangent.hpp"
 #include "scene/material.hpp"
 #include "sph_reference/total_lagrangian/loops.hpp"
+
+#include <optional>
 
 namespace concord::sph {
 
@@ -30,7 +33,7 @@ class TotalLagrangianSph final : public particle::ForceModel {
               const Executor& executor) override;
   particle::Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
-  Eigen::SparseMatrix<double> tangent(std::span<const double> u) override;
+  const Stiffness& tangent(std::span<const double> u) override;
   bool has_potential() const override { return penalty() != PenaltyForm::ganzenmueller; }
   bool viscous() const override { return m_options.alpha > 0 || m_options.beta > 0; }
   /// Bound on the damping ratio at omega_max by the linear term at alpha (TLS.13).
@@ -61,9 +64,10 @@ class TotalLagrangianSph final : public particle::ForceModel {
   Points m_points;
   Neighbours m_rows;
   Loops m_loops;
-  Column m_records;          ///< see State
-  Column m_u, m_v;           ///< of all points, where there are images
-  std::vector<Index> m_bad;  ///< first bad particle of each range
+  Column m_records;  ///< see State
+  Column m_u, m_v;   ///< of all points, where there are images
+  std::optional<particle::TangentAssembly> m_tangent;  ///< made when first asked for
+  std::vector<Index> m_bad;                            ///< first bad particle of each range
 };
 
 }  // namespace concord::sph

@@ -47,7 +47,7 @@ particle::PairTangent ganzenmueller_pair(double k, const Vec3& l, const Vec3& x)
 
 }  // namespace
 
-Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> u) {
+const particle::ForceModel::Stiffness& TotalLagrangianSph::tangent(std::span<const double> u) {
   if (m_points.images() > 0) throw std::logic_error("tlsph: tangent with mirror particles");
   const Executor one_thread(1);
   update_gradients(state(u, {}, {}, one_thread), one_thread);
@@ -74,7 +74,8 @@ Eigen::SparseMatrix<double> TotalLagrangianSph::tangent(std::span<const double> 
       pairs.push_back(pair);
     }
   }
-  return particle::assemble_tangent(m_body, gradient_rows(m_body, m_rows), moduli, pairs);
+  if (!m_tangent) m_tangent.emplace(m_body, gradient_rows(m_body, m_rows));
+  return m_tangent->assemble(moduli, pairs);
 }
 
 }  // namespace concord::sph

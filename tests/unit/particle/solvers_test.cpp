@@ -31,11 +31,12 @@ class Oscillators final : public ForceModel {
   void gradients(std::span<const double>, std::span<Mat3> H) override {
     for (Mat3& h : H) h.setZero();
   }
-  Eigen::SparseMatrix<double> tangent(std::span<const double>) override { return {}; }
+  const Stiffness& tangent(std::span<const double>) override { return m_none; }
   std::size_t interactions() const override { return 0; }
 
  private:
   std::vector<double> m_k;
+  Stiffness m_none;
 };
 
 scene::Problem free_block(const std::vector<scene::Override>& set = {}) {
