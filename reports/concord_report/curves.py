@@ -37,10 +37,13 @@ def curve(study, cases, plot):
     _mark(lines)
     lines, labels = _in_units(lines, plot, columns)
     ends = "; ".join(f"{c['label']} ends at {pretty(c['x'][-1])}, {pretty(c['y'][-1])}" for c in lines)
+    inset = _window(plot.get("inset"), lines)
     return {"scales": ["linear", "linear"], "xlabel": labels[0], "ylabel": labels[1], "curves": lines,
             "title": plot.get("title") or f"{capital(_name(labels[1]))} against {_name(labels[0])}",
-            "note": "The stronger the line, the finer the run." if any(c["rank"] for c in lines) else "",
-            "inset": _window(plot.get("inset"), lines), "legend": True,
+            "note": " ".join(filter(None, (
+                "The stronger the line, the finer the run." if any(c["rank"] for c in lines) else "",
+                "No curve passes through the window of the inset." if plot.get("inset") and not inset else ""))),
+            "inset": inset, "legend": True,
             "triangles": [], "alt": f"Plot of {labels[1]} against {labels[0]}. {ends}."}
 
 
@@ -51,10 +54,12 @@ def _window(wanted, lines):
         return None
     def inside(value, along): return along not in wanted or wanted[along][0] <= value <= wanted[along][1]
     seen = [(x, y) for c in lines for x, y in zip(c["x"], c["y"]) if inside(x, "x") and inside(y, "y")]
+    if not seen:
+        return None
     out = []
     for k, along in enumerate("xy"):
-        values = wanted.get(along) or (seen and [min(p[k] for p in seen), max(p[k] for p in seen)])
-        if not values or not values[0] < values[1]:
+        values = wanted.get(along) or [min(p[k] for p in seen), max(p[k] for p in seen)]
+        if not values[0] < values[1]:
             return None
         room = 0 if along in wanted else 0.06 * (values[1] - values[0])
         out.append([values[0] - room, values[1] + room])

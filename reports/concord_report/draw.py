@@ -135,6 +135,8 @@ def _frame(axes, spec, curves):
     axes.set_xlabel(spec["xlabel"], labelpad=6)
     x = [v for c in curves for v in c["x"]]
     y = [v for c in curves for v in c["y"] + (c["low"] or []) + (c["high"] or [])]
+    if spec.get("from_zero") and spec["scales"][1] == "linear":
+        y.append(0.0)
     levels = [curve["x"] for curve in curves]
     for values, scale, one, is_x in ((x, spec["scales"][0], axes.xaxis, True),
                                      (y, spec["scales"][1], axes.yaxis, False)):
@@ -150,7 +152,7 @@ def _log(axes, one, values, is_x, levels):
     if is_x and len(places) <= 7 and _apart(places, low, high):
         one.set_major_locator(FixedLocator(places))
         one.set_minor_locator(FixedLocator([]))
-        one.set_major_formatter(FuncFormatter(lambda v, _: exact(v)))
+        one.set_major_formatter(FuncFormatter(lambda v, _: exact(v, 3)))
         return
     narrow = high / low < 30
     one.set_major_locator(LogLocator(10, subs=(1, 2, 5) if narrow else (1,), numticks=12))
@@ -167,13 +169,15 @@ def _decade(value):
 def _apart(places, low, high):
     """True when labels at these places of a log axis do not touch."""
     full = math.log(high / low) or 1
-    return all(math.log(b / a) / full > 0.085 for a, b in zip(places, places[1:]))
+    wide = [_width(exact(p, 3)) / AREA for p in places]
+    return all(math.log(b / a) / full > (wide[k] + wide[k + 1]) / 2 + 0.025
+               for k, (a, b) in enumerate(zip(places, places[1:])))
 
 
 def _linear(axes, one, values, is_x, levels):
     low, high = min(values), max(values)
     room = 0.04 * (high - low) or 0.05 * abs(high) or 1
-    limits = (low if is_x else low - room, high if is_x else high + room)
+    limits = (low if is_x or low == 0 else low - room, high if is_x else high + room)
     if limits[0] == limits[1]:
         limits = (low - room, high + room)
     (axes.set_xlim if is_x else axes.set_ylim)(*limits)

@@ -98,7 +98,8 @@ def words_of(key):
 
 
 def without(label, *keys):
-    """The case's label less the words that tell these settings."""
+    """The case's label less the words that tell these settings, and less one comma with each."""
     for short in map(words_of, keys):
-        label = re.sub(rf"(?:,\s*)?(?<!\w){re.escape(short)}[\s=]+[^,]+", "", label)
-    return re.sub(r"^\s*,\s*|\s*,\s*$", "", label).strip()
+        words = rf"(?<!\w){re.escape(short)}[\s=]+[^,]+"
+        label = re.sub(rf",\s*{words}|{words},\s*|{words}", "", label)
+    return label.strip()

@@ -36,7 +36,7 @@ def _plots(study, cases, store, warnings):
             out.append({"kind": "missing", "title": f"No {what}", "why": spec})
             continue
         drawing = plots.drawn(spec, f"{slug(study.name)}-p{number}", store)
-        out.append({"kind": plot["kind"], "title": spec["title"], "svg": drawing,
+        out.append({"kind": plot["kind"], "title": variant_text(spec["title"]), "svg": drawing,
                     "note": spec.get("note", "")})
     return out
 

@@ -6,6 +6,7 @@ METHODS = {
     "delaunay": ("Delaunay", "--m-delaunay", "#0072b2", "#58aee6"),
     "tlsph": ("TLSPH", "--m-tlsph", "#d55e00", "#f58b3c"),
     "fem": ("FEM", "--m-fem", "#3d4248", "#d4d8dd"),
+    "calculix": ("CalculiX", "--m-calculix", "#85623f", "#cfa981"),
     "voronoi": ("Voronoi", "--m-voronoi", "#00916a", "#2ec79c"),
     "cbm": ("CBM", "--m-cbm", "#b9578f", "#e093bf"),
     "mpm": ("MPM", "--m-mpm", "#2b8fc9", "#7cc8f2"),

@@ -46,7 +46,10 @@ def convergence(study, cases, plot):
     told = "; ".join(f"{c['label']} {pretty(c['slope'])}" for c in curves if c["slope"] is not None)
     name = name_and_unit(plot["quantity"])[0]
     wanted = number(plot.get("slope"))
-    return {"scales": ["log", "log"], "xlabel": "mean spacing h [m]", "ylabel": axis(plot["quantity"]),
+    unit = "m"
+    if not number(plot.get("x_scale")) and max(x for c in curves for x in c["x"]) < 0.01:
+        curves, unit = _times(curves, "x", 1e3), "mm"
+    return {"scales": ["log", "log"], "xlabel": f"mean spacing h [{unit}]", "ylabel": axis(plot["quantity"]),
             "curves": curves, "title": plot.get("title") or f"{capital(name)} against spacing",
             "note": "Fitted orders in brackets." if orders and len(curves) <= DIRECT else "",
             "triangles": [wanted] if wanted else _nominal(orders),

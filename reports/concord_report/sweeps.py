@@ -2,7 +2,7 @@
 
 import math
 
-from .cases import chosen
+from .cases import chosen, variant_text
 from .digits import exact, pretty
 from .kinds import capital, curve_of, kind, level_of, scale_of, setting_of, without, words_of
 from .loading import number
@@ -75,7 +75,7 @@ def sweep(study, cases, plot):
     return {"scales": ["log" if broken_off else scale_of(xs), scale_of([v for c in curves + lines for v in c["low"]])],
             "xlabel": _setting_label(plot, "x", key, units[key]),
             "ylabel": plot.get("y_label") or axis(plot["quantity"]), "curves": curves + lines, "triangles": [],
-            "zero_apart": broken_off, "note": " ".join(filter(None, (note, missing))),
+            "zero_apart": broken_off, "from_zero": True, "note": " ".join(filter(None, (note, missing))),
             "title": plot.get("title") or f"{capital(name)} against {short}",
             "alt": f"Plot of {name} against {short}. {told}."}
 
@@ -96,7 +96,7 @@ def _baselines(cases, plot, span, count):
         for case, level in levels:
             pooled = _pooled([(path, level)], _factor(plot))
             points = [(x, *pooled, level) for x in span]
-            lines.append({**curve_of(case, points, entry.get("label") or case.label),
+            lines.append({**curve_of(case, points, variant_text(entry.get("label")) or case.label),
                           "case": -1 - count - len(lines), "baseline": True, "style": case.style})
     return lines, " ".join(missing)
 

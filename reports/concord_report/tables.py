@@ -77,7 +77,8 @@ def _case_column(pairs):
 
 def convergence_table(study, cases, path):
     """h, unknowns, error, spread over seeds, local and fitted order, cost: a line a level."""
-    pairs = [(c, l) for c in cases if c.has(path) for l in c.levels]
+    ladders = [c for c in cases if _measured(c, path) > 1]
+    pairs = [(c, l) for c in ladders or cases if c.has(path) for l in c.levels]
     if not pairs:
         return None
     first = (quantities_with_levels(study) or [path])[0]
@@ -108,14 +109,20 @@ def convergence_table(study, cases, path):
         "line of its case.")
 
 
+def _measured(case, path):
+    """On how many levels a case has this quantity."""
+    return sum(1 for level in case.levels if level.values(path))
+
+
 def _typical(level, path):
     value = level.mean(path)
     return None if value is None else round(value)
 
 
 def results_table(study, cases):
-    """What claims ask of single runs and no convergence table shows: mean and spread a level."""
-    shown = quantities_with_levels(study)
+    """What claims ask of runs and no convergence table shows for all of them: mean and spread a level."""
+    shown = [q for q in quantities_with_levels(study)  # and of every case: a ladder or nothing
+             if not any(_measured(c, q) > 1 for c in cases) or all(_measured(c, q) != 1 for c in cases)]
     paths = []
     for claim in study.claims:
         path = claim.get("quantity")

@@ -102,6 +102,11 @@ class Sweeps(unittest.TestCase):
         for tick in ("0", "0.01", "0.1", "1"):
             self.assertIn(tick, ticks)
 
+    def test_labels_lose_the_setting_and_its_comma(self):
+        for label, wanted in (("TLSPH ψ 0.1, support 2", "TLSPH support 2"), ("TLSPH support 2, ψ 0.1", "TLSPH support 2"),
+                              ("TLSPH a, ψ 0.1, support 2", "TLSPH a, support 2")):
+            self.assertEqual(kinds.without(label, "tlsph.psi"), wanted)
+
     def test_cases_that_share_a_setting_are_one_point(self):
         rows = [row("tlsph", v, e, settings={"psi": 0.1}) for v, e in (("psi 0.1", 1.0), ("psi 0.10", 3.0))]
         curve, = spec_of(rows, {"kind": "sweep", "quantity": "errors.e", "setting": "psi"})["curves"]
@@ -150,6 +155,17 @@ class Balance(unittest.TestCase):
         spec = spec_of(rows, {"kind": "convergence", "quantity": "errors.e"})
         self.assertEqual(spec["curves"][0]["broken"], [False, True])
         self.assertIn("does not close", spec["note"])
+
+
+class Ladders(unittest.TestCase):
+    def test_single_levels_stand_among_the_results(self):
+        rows = [row("cbm", "", 1 / n, resolution=n, h=1 / n) for n in (4, 8)] + [row("tlsph", "psi 1", 0.3)]
+        one = study(rows, plots=[{"kind": "convergence", "quantity": "errors.e"}])
+        one.claims.append({"id": "a", "statement": "A", "verdict": "pass", "quantity": "errors.e"})
+        found = cases.cases_of(one)
+        self.assertEqual(len(tables.convergence_table(one, found, "errors.e")["rows"]), 2)
+        self.assertEqual(len(tables.results_table(one, found)["rows"]), 3)
+        self.assertIsNone(tables.results_table(one, found[:1]))
 
 
 class Words(unittest.TestCase):
