@@ -12,40 +12,99 @@ namespace {
 struct Measured {
   std::optional<double> value;
   std::string reason;
+  std::optional<double> place;       // of a minimum
+  std::vector<std::string> remarks;  // what to know of the runs that gave the number
 };
 
-Measured pooled(const Study& study, const std::vector<Row>& rows, const Selector& selector,
-                const std::string& quantity, const std::optional<double>& resolution,
-                Pool pool) {
-  std::vector<double> values;
-  for (const Row& row : rows) {
-    const Case& entry = study.cases[row.case_index];
-    if (!entry.matches(selector) || (resolution && row.resolution != *resolution)) continue;
-    const auto value = value_of(row, quantity);
-    if (!value)
-      return {{},
-              fmt::format("{}, resolution {:g}, seed {}: {}", entry.title(), row.resolution,
-                          row.seed, row.error.empty() ? "no " + quantity : row.error)};
-    values.push_back(*value);
-  }
-  if (values.empty())
-    return {{},
-            resolution ? fmt::format("no run at resolution {:g}", *resolution)
-                       : "no run of this case"};
-  if (pool == Pool::max) return {*std::max_element(values.begin(), values.end()), ""};
-  if (pool == Pool::min) return {*std::min_element(values.begin(), values.end()), ""};
+std::string run_title(const Study& study, const Row& row) {
+  return fmt::format("{}, resolution {:g}, seed {}", study.cases[row.case_index].title(),
+                     row.resolution, row.seed);
+}
+
+double pool_of(const std::vector<double>& values, Pool pool) {
+  if (pool == Pool::max) return *std::max_element(values.begin(), values.end());
+  if (pool == Pool::min) return *std::min_element(values.begin(), values.end());
   double sum = 0;
   for (const double value : values) sum += value;
-  return {sum / static_cast<double>(values.size()), ""};
+  return sum / static_cast<double>(values.size());
+}
+
+/// What a claim asks of runs, for the claim's own cases or the denominator's.
+struct Wanted {
+  const Selector& selector;
+  const std::string& quantity;
+  const std::optional<double>& resolution;
+  Pool pool;
+};
+
+Measured pooled(const Study& study, const std::vector<Row>& rows, const Wanted& wanted,
+                std::optional<std::size_t> only_case = std::nullopt) {
+  std::vector<double> values;
+  Measured measured;
+  for (const Row& row : rows) {
+    const Case& entry = study.cases[row.case_index];
+    if (only_case ? row.case_index != *only_case : !entry.matches(wanted.selector)) continue;
+    if (wanted.resolution && row.resolution != *wanted.resolution) continue;
+    const auto value = value_of(row, wanted.quantity);
+    if (!value)
+      return {{}, run_title(study, row) + ": " + why_absent(row, wanted.quantity), {}, {}};
+    values.push_back(*value);
+    if (!balance_closes(study, row).value_or(true))
+      measured.remarks.push_back("energy balance does not close: " + run_title(study, row));
+  }
+  if (values.empty()) {
+    measured.reason = wanted.resolution
+                          ? fmt::format("no run at resolution {:g}", *wanted.resolution)
+                          : "no run of this case";
+    return measured;
+  }
+  measured.value = pool_of(values, wanted.pool);
+  return measured;
+}
+
+/// Value of a setting of the method or scene, as a number.
+std::optional<double> setting_of(const Case& entry, const std::string& name) {
+  for (const auto* settings : {&entry.set, &entry.scene_set}) {
+    const auto found = settings->find(name);
+    if (found == settings->end()) continue;
+    try {
+      return std::stod(found->second);
+    } catch (const std::logic_error&) {
+      return std::nullopt;  // a word
+    }
+  }
+  return std::nullopt;
+}
+
+/// The least over the cases selected, and where it lies. A case without a value cannot hold it
+/// and is named in the remarks.
+Measured least(const Study& study, const Claim& claim, const std::vector<Row>& rows,
+               const Wanted& wanted) {
+  Measured best;
+  best.reason = "no case has a value";
+  std::vector<std::string> without;
+  for (std::size_t c = 0; c < study.cases.size(); ++c) {
+    if (!study.cases[c].matches(claim.selector)) continue;
+    Measured one = pooled(study, rows, wanted, c);
+    if (!one.value) {
+      without.push_back("without a value: " + one.reason);
+    } else if (!best.value || *one.value < *best.value) {
+      best = std::move(one);
+      if (!claim.setting.empty()) best.place = setting_of(study.cases[c], claim.setting);
+    }
+  }
+  best.remarks.insert(best.remarks.end(), without.begin(), without.end());
+  return best;
 }
 
 Measured slope(const Study& study, const Claim& claim, const std::vector<FitResult>& fits) {
   for (const FitResult& fit : fits)
     if (study.cases[fit.case_index].matches(claim.selector) && fit.quantity == claim.quantity)
-      return {fit.line.slope, ""};
+      return {fit.line.slope, "", {}, {}};
   return {{},
-          "no fit of " + claim.quantity +
-              ": a [[fit]] and three levels with values are needed"};
+          "no fit of " + claim.quantity + ": a [[fit]] and three levels with values are needed",
+          {},
+          {}};
 }
 
 Measured gci(const Study& study, const Claim& claim,
@@ -53,10 +112,10 @@ Measured gci(const Study& study, const Claim& claim,
   for (const ReferenceResult& reference : references)
     if (study.cases[reference.case_index].matches(claim.selector) &&
         reference.quantity == claim.quantity) {
-      if (reference.convergence.asymptotic) return {reference.convergence.gci, ""};
-      return {{}, reference.convergence.statement};
+      if (reference.convergence.asymptotic) return {reference.convergence.gci, "", {}, {}};
+      return {{}, reference.convergence.statement, {}, {}};
     }
-  return {{}, "no [[reference]] for " + claim.quantity};
+  return {{}, "no [[reference]] for " + claim.quantity, {}, {}};
 }
 
 Measured measure(const Study& study, const Claim& claim, const std::vector<Row>& rows,
@@ -64,14 +123,40 @@ Measured measure(const Study& study, const Claim& claim, const std::vector<Row>&
                  const std::vector<ReferenceResult>& references) {
   if (claim.kind == ClaimKind::slope) return slope(study, claim, fits);
   if (claim.kind == ClaimKind::gci) return gci(study, claim, references);
-  Measured value =
-      pooled(study, rows, claim.selector, claim.quantity, claim.resolution, claim.over_seeds);
-  if (claim.kind == ClaimKind::value || !value.value) return value;
-  const Measured other = pooled(study, rows, claim.other, claim.other_quantity,
-                                claim.other_resolution, claim.over_seeds);
+  const Wanted wanted{claim.selector, claim.quantity, claim.resolution, claim.over_seeds};
+  Measured value = claim.kind == ClaimKind::minimum ? least(study, claim, rows, wanted)
+                                                    : pooled(study, rows, wanted);
+  const bool divided = claim.kind == ClaimKind::ratio || claim.divided;
+  if (!divided || !value.value) return value;
+  Measured other =
+      pooled(study, rows,
+             {claim.other, claim.other_quantity, claim.other_resolution, claim.over_seeds});
   if (!other.value) return other;
-  if (*other.value == 0) return {{}, "the denominator is 0"};
-  return {*value.value / *other.value, ""};
+  if (*other.value == 0) return {{}, "the denominator is 0", {}, {}};
+  *value.value /= *other.value;
+  value.remarks.insert(value.remarks.end(), other.remarks.begin(), other.remarks.end());
+  return value;
+}
+
+/// Judges a number against the claim's bounds.
+void weigh(const Claim& claim, const Measured& measured, ClaimResult& result) {
+  const auto within = [](double value, const std::optional<double>& low,
+                         const std::optional<double>& high) {
+    return (!low || value >= *low) && (!high || value <= *high);
+  };
+  result.measured = *measured.value * display_factor(claim.unit, claim.where);
+  result.place = measured.place;
+  const bool placed = claim.setting_minimum || claim.setting_maximum;
+  const bool holds = within(*result.measured, claim.minimum, claim.maximum) &&
+                     (!placed || (result.place && within(*result.place, claim.setting_minimum,
+                                                         claim.setting_maximum)));
+  result.verdict = holds ? Verdict::pass : Verdict::fail;
+  if (holds) return;
+  const std::string where =
+      !placed ? ""
+              : fmt::format(" at {} {}", claim.setting,
+                            result.place ? fmt::format("{:g}", *result.place) : "unknown");
+  result.reason = fmt::format("{:.4g}{} is not {}", *result.measured, where, bound_text(claim));
 }
 
 }  // namespace
@@ -94,6 +179,14 @@ std::string bound_text(const Claim& claim) {
   if (claim.minimum) text = fmt::format(">= {:g}{}", *claim.minimum, unit);
   if (claim.maximum)
     text += fmt::format("{}<= {:g}{}", text.empty() ? "" : " and ", *claim.maximum, unit);
+  const auto &low = claim.setting_minimum, &high = claim.setting_maximum;
+  if (!low && !high) return text;
+  text += (text.empty() ? "at " : ", at ") + claim.setting;
+  if (low && high)
+    text +=
+        *low == *high ? fmt::format(" {:g}", *low) : fmt::format(" {:g} to {:g}", *low, *high);
+  else
+    text += low ? fmt::format(" >= {:g}", *low) : fmt::format(" <= {:g}", *high);
   return text;
 }
 
@@ -102,21 +195,16 @@ std::vector<ClaimResult> judge(const Study& study, const std::vector<Row>& rows,
                                const std::vector<ReferenceResult>& references) {
   std::vector<ClaimResult> results;
   for (const Claim& claim : study.claims) {
-    ClaimResult result{&claim, Verdict::fail, {}, ""};
+    ClaimResult result{&claim, Verdict::fail, {}, "", {}};
     if (claim.full_only && !study.full) {
       result.verdict = Verdict::full_report_only;
       result.reason = "judged by the full report";
     } else {
-      Measured measured = measure(study, claim, rows, fits, references);
-      result.reason = std::move(measured.reason);
-      if (measured.value) {
-        result.measured = *measured.value * display_factor(claim.unit, claim.where);
-        const bool holds = (!claim.minimum || *result.measured >= *claim.minimum) &&
-                           (!claim.maximum || *result.measured <= *claim.maximum);
-        result.verdict = holds ? Verdict::pass : Verdict::fail;
-        if (!holds)
-          result.reason = fmt::format("{:.4g} is not {}", *result.measured, bound_text(claim));
-      }
+      const Measured measured = measure(study, claim, rows, fits, references);
+      result.reason = measured.reason;
+      if (measured.value) weigh(claim, measured, result);
+      for (const std::string& remark : measured.remarks)
+        result.reason += (result.reason.empty() ? "" : "; ") + remark;
     }
     results.push_back(std::move(result));
   }

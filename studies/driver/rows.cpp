@@ -21,6 +21,24 @@ std::optional<double> value_of(const Row& row, const std::string& quantity) {
   return at->get<double>();
 }
 
+std::string why_absent(const Row& row, const std::string& quantity) {
+  if (!row.error.empty()) return row.error;
+  const auto comparisons = row.summary.find("comparisons");
+  if (comparisons != row.summary.end())
+    for (const auto& [name, told] : comparisons->items())
+      if (quantity.ends_with("_" + name) && told.contains("reason"))
+        return "no " + quantity + ": " + told.at("reason").get<std::string>();
+  return "no " + quantity;
+}
+
+std::optional<bool> balance_closes(const Study& study, const Row& row) {
+  const auto drift = value_of(row, "invariants.energy_drift");
+  if (!study.balance_tolerance || !drift) return std::nullopt;
+  return std::abs(*drift) <= *study.balance_tolerance;
+}
+
+const char* balance_text(bool closes) { return closes ? "closes" : "does not close"; }
+
 namespace {
 
 double mean_of(const std::vector<const Row*>& rows, const std::string& quantity) {

@@ -26,6 +26,15 @@ struct Row {
 /// is absent or the run failed.
 std::optional<double> value_of(const Row& row, const std::string& quantity);
 
+/// Why a row has no such value: its error, why it was not compared, or that it has none.
+std::string why_absent(const Row& row, const std::string& quantity);
+
+/// Whether |invariants.energy_drift| of a run is within the study's balance_tolerance; nothing
+/// where the study sets none or the run has no drift.
+std::optional<bool> balance_closes(const Study& study, const Row& row);
+/// "closes" or "does not close".
+const char* balance_text(bool closes);
+
 /// One resolution of a case: a quantity over its seeds. Exists only if every seed has a value.
 struct Level {
   double resolution = 0, h = 0;

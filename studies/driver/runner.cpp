@@ -4,6 +4,7 @@
 #include "scene/method.hpp"
 #include "scene/reader.hpp"
 #include "studies/driver/child.hpp"
+#include "studies/driver/compare.hpp"
 #include "studies/driver/progress.hpp"
 
 #include <fmt/format.h>
@@ -40,8 +41,13 @@ std::string read_text(const fs::path& file) {
   return text.str();
 }
 
-scene::Problem problem_of(const Case& entry) {
-  const std::vector<scene::Override> overrides(entry.scene_set.begin(), entry.scene_set.end());
+/// Overrides of the scene that make a run leave its last state as its only frame.
+constexpr const char* last_frame_key = "output.frames";
+constexpr const char* last_frame_value = "0";
+
+scene::Problem problem_of(const Case& entry, bool last_frame_only) {
+  std::vector<scene::Override> overrides(entry.scene_set.begin(), entry.scene_set.end());
+  if (last_frame_only) overrides.emplace_back(last_frame_key, last_frame_value);
   return scene::read_problem(entry.scene, overrides);
 }
 
@@ -55,7 +61,8 @@ void check_method(const Case& entry) {
   }
 }
 
-std::vector<std::string> arguments_of(const Case& entry, const Job& job, const RunKey& run) {
+std::vector<std::string> arguments_of(const Case& entry, const Job& job, const RunKey& run,
+                                      bool last_frame_only) {
   std::vector<std::string> arguments{"run",          entry.scene,
                                      "--method",     entry.method,
                                      "--resolution", fmt::format("{}", run.resolution),
@@ -66,6 +73,9 @@ std::vector<std::string> arguments_of(const Case& entry, const Job& job, const R
   if (!run.frames) arguments.emplace_back("--no-frames");
   for (const auto& [key, value] : entry.scene_set)
     arguments.insert(arguments.end(), {"--set", key + "=" + value});
+  if (last_frame_only)
+    arguments.insert(arguments.end(),
+                     {"--set", fmt::format("{}={}", last_frame_key, last_frame_value)});
   for (const auto& [key, value] : entry.set)
     arguments.insert(arguments.end(), {"--set", entry.method + "." + key + "=" + value});
   return arguments;
@@ -76,31 +86,56 @@ struct Plan {
   std::vector<Job> jobs;
 };
 
+/// Adds one run of a case to the plan.
+class Planner {
+ public:
+  Planner(const Study& study, const fs::path& out, std::size_t c)
+      : m_study(study), m_entry(study.cases[c]), m_case(c), m_out(out),
+        m_name(slug(m_entry.scene + "-" + m_entry.method + "-" + m_entry.variant)),
+        m_problem(problem_of(m_entry, false)), m_last_frame(problem_of(m_entry, true)) {}
+
+  void add(double resolution, std::uint64_t seed, Plan& plan) const {
+    const bool frames = m_entry.frames && resolution == m_entry.resolutions.back() &&
+                        seed == m_entry.seeds.front();
+    const bool last_only = !frames && needs_last_frame(m_study, m_case, resolution, seed);
+    const scene::Problem& problem = last_only ? m_last_frame : m_problem;
+    const RunKey run{&m_entry, resolution, seed, frames || last_only, m_study.timing};
+    Row row{m_case, resolution, seed, nlohmann::json::object(), "", {}};
+    row.run = fs::path("runs") / m_name / fmt::format("{:g}-{}", resolution, seed);
+    Job job{plan.rows.size(),
+            cache_key(problem, run),
+            m_out / row.run,
+            {},
+            1,
+            fmt::format("{}, {:g}", m_entry.title(), resolution)};
+    job.arguments = arguments_of(m_entry, job, run, last_only);
+    job.weight += std::pow(resolution, problem.dim() + (steps(problem) ? 1 : 0));
+    plan.rows.push_back(std::move(row));
+    plan.jobs.push_back(std::move(job));
+  }
+
+ private:
+  /// Whether the number of steps grows with the resolution.
+  bool steps(const scene::Problem& problem) const {
+    const auto solver = m_entry.set.find("solver");
+    return !problem.is_static || (solver != m_entry.set.end() && solver->second == "explicit");
+  }
+
+  const Study& m_study;
+  const Case& m_entry;
+  std::size_t m_case;
+  const fs::path& m_out;
+  std::string m_name;
+  scene::Problem m_problem, m_last_frame;
+};
+
 Plan make_plan(const Study& study, const RunnerOptions& options) {
   Plan plan;
   for (std::size_t c = 0; c < study.cases.size(); ++c) {
-    const Case& entry = study.cases[c];
-    check_method(entry);
-    const scene::Problem problem = problem_of(entry);
-    const std::string name = slug(entry.scene + "-" + entry.method + "-" + entry.variant);
-    for (const double resolution : entry.resolutions)
-      for (const std::uint64_t seed : entry.seeds) {
-        const bool frames = entry.frames && resolution == entry.resolutions.back() &&
-                            seed == entry.seeds.front();
-        const RunKey run{&entry, resolution, seed, frames, study.timing};
-        Row row{c, resolution, seed, nlohmann::json::object(), "", {}};
-        row.run = fs::path("runs") / name / fmt::format("{:g}-{}", resolution, seed);
-        Job job{plan.rows.size(),
-                cache_key(problem, run),
-                options.out / row.run,
-                {},
-                1,
-                fmt::format("{}, {:g}", entry.title(), resolution)};
-        job.arguments = arguments_of(entry, job, run);
-        job.weight += std::pow(resolution, problem.dim() + (problem.is_static ? 0 : 1));
-        plan.rows.push_back(std::move(row));
-        plan.jobs.push_back(std::move(job));
-      }
+    check_method(study.cases[c]);
+    const Planner planner(study, options.out, c);
+    for (const double resolution : study.cases[c].resolutions)
+      for (const std::uint64_t seed : study.cases[c].seeds) planner.add(resolution, seed, plan);
   }
   return plan;
 }

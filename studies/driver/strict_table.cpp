@@ -74,6 +74,19 @@ bool StrictTable::flag_or(const std::string& key, bool fallback) {
   return found->boolean;
 }
 
+std::vector<double> StrictTable::numbers(const std::string& key) {
+  const ConfigNode* found = node(key);
+  if (!found) return {};
+  const char* allowed = "a list of numbers, such as [0, 0.5]";
+  if (found->kind != Kind::array || found->elements.empty()) reject(*found, allowed);
+  std::vector<double> values;
+  for (const ConfigNode& element : found->elements) {
+    if (!is_number(element)) reject(element, allowed);
+    values.push_back(element.number);
+  }
+  return values;
+}
+
 std::vector<double> StrictTable::positive_numbers(const std::string& key) {
   const ConfigNode* found = node(key);
   if (!found) return {};
@@ -125,17 +138,38 @@ StrictTable StrictTable::table(const std::string& key, const std::string& allowe
   return StrictTable(*found);
 }
 
-std::vector<StrictTable> StrictTable::tables(const std::string& key) {
+std::vector<StrictTable> StrictTable::tables_of(const std::string& key,
+                                                const std::string& allowed) {
   std::vector<StrictTable> entries;
   const ConfigNode* found = node(key);
   if (!found) return entries;
-  const std::string allowed = fmt::format("entries that begin with [[{}]]", key);
   if (found->kind != Kind::array) reject(*found, allowed);
   for (const ConfigNode& element : found->elements) {
     if (element.kind != Kind::table) reject(element, allowed);
     entries.emplace_back(element);
   }
   return entries;
+}
+
+std::vector<StrictTable> StrictTable::tables(const std::string& key) {
+  return tables_of(key, fmt::format("entries that begin with [[{}]]", key));
+}
+
+std::vector<StrictTable> StrictTable::inner_tables(const std::string& key) {
+  return tables_of(key, "a list of tables such as [{ method = \"fem\" }]");
+}
+
+std::vector<std::string> StrictTable::texts(const std::string& key) {
+  std::vector<std::string> values;
+  const ConfigNode* found = node(key);
+  if (!found) return values;
+  const char* allowed = "a list of texts in quotes";
+  if (found->kind != Kind::array || found->elements.empty()) reject(*found, allowed);
+  for (const ConfigNode& element : found->elements) {
+    if (element.kind != Kind::text) reject(element, allowed);
+    values.push_back(element.text);
+  }
+  return values;
 }
 
 void StrictTable::finish() const {

@@ -24,6 +24,8 @@ class StrictTable {
   std::optional<double> optional_number(const std::string& key);
   double number_or(const std::string& key, double fallback);
   bool flag_or(const std::string& key, bool fallback);
+  /// A non-empty array of numbers; empty when the key is absent.
+  std::vector<double> numbers(const std::string& key);
   /// A non-empty array of positive numbers; empty when the key is absent.
   std::vector<double> positive_numbers(const std::string& key);
   /// Table of scalars as text, numbers as written, booleans as on/off.
@@ -34,6 +36,10 @@ class StrictTable {
   StrictTable table(const std::string& key, const std::string& allowed);
   /// Array of tables; empty when the key is absent.
   std::vector<StrictTable> tables(const std::string& key);
+  /// The same, written within the entry: [{ ... }, { ... }].
+  std::vector<StrictTable> inner_tables(const std::string& key);
+  /// A non-empty array of texts; empty when the key is absent.
+  std::vector<std::string> texts(const std::string& key);
 
   void finish() const;
   const SourcePosition& where() const { return m_table->where; }
@@ -42,6 +48,7 @@ class StrictTable {
   [[noreturn]] void missing(const std::string& key, const std::string& allowed) const;
 
  private:
+  std::vector<StrictTable> tables_of(const std::string& key, const std::string& allowed);
   const scene::ConfigNode* m_table;
   std::vector<std::string> m_known;
 };

@@ -1,17 +1,12 @@
 #include "studies/driver/study_entries.hpp"
 
-#include "scene/suggest.hpp"
+#include "scene/section.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace concord::studies {
 namespace {
-
-Selector read_selector(StrictTable& table) {
-  return {table.optional_text("scene"), table.optional_text("method"),
-          table.optional_text("variant")};
-}
 
 std::vector<std::uint64_t> read_seeds(StrictTable& table) {
   std::vector<std::uint64_t> seeds;
@@ -57,28 +52,17 @@ std::vector<Case> expand(const Case& base,
   return cases;
 }
 
-template <class T>
-T choose(StrictTable& table, const std::string& key,
-         const std::vector<std::pair<std::string, T>>& choices, const T* fallback = nullptr) {
-  std::vector<std::string> words;
-  for (const auto& [name, value] : choices) words.push_back(name);
-  const auto word = table.optional_text(key);
-  if (!word && fallback) return *fallback;
-  if (!word) table.missing(key, scene::allowed_words("", words));
-  for (const auto& [name, value] : choices)
-    if (name == *word) return value;
-  table.reject(*table.node(key), scene::allowed_words(*word, words));
-}
-
 void read_other(StrictTable& table, Claim& claim) {
   claim.other = claim.selector;
   claim.other_quantity = claim.quantity;
   claim.other_resolution = claim.resolution;
-  if (claim.kind != ClaimKind::ratio) {
-    if (const auto* node = table.node("other"))
-      table.reject(*node, "only for kind = \"ratio\"");
+  const auto* node = table.node("other");
+  if (claim.kind == ClaimKind::minimum && node == nullptr) return;
+  if (claim.kind != ClaimKind::ratio && claim.kind != ClaimKind::minimum) {
+    if (node) table.reject(*node, "only for kind = \"ratio\" and \"minimum\"");
     return;
   }
+  claim.divided = true;
   StrictTable other =
       table.table("other", "what differs in the denominator, such as { variant = \"xi 0\" }");
   const Selector selector = read_selector(other);
@@ -91,7 +75,51 @@ void read_other(StrictTable& table, Claim& claim) {
   other.finish();
 }
 
+/// Which value of a setting the minimum must lie at.
+void read_place(StrictTable& table, Claim& claim) {
+  if (claim.kind != ClaimKind::minimum) {
+    for (const char* key : {"setting", "setting_min", "setting_max"})
+      if (const auto* node = table.node(key))
+        table.reject(*node, "only for kind = \"minimum\"");
+    return;
+  }
+  claim.setting = table.text_or("setting", "");
+  claim.setting_minimum = table.optional_number("setting_min");
+  claim.setting_maximum = table.optional_number("setting_max");
+  if ((claim.setting_minimum || claim.setting_maximum) && claim.setting.empty())
+    table.missing("setting", "the setting that setting_min and setting_max bound");
+}
+
+LeaveOut read_leave_out(StrictTable table) {
+  LeaveOut out;
+  out.axis = choose<int>(table, "axis", {{"x", 0}, {"y", 1}, {"z", 2}});
+  const auto length = [&table](const char* key) {
+    const scene::ConfigNode* node = table.node(key);
+    if (node == nullptr) table.missing(key, "a length such as \"40 mm\"");
+    return scene::read_quantity(*node, scene::unit::length);
+  };
+  out.low = length("low");
+  out.high = length("high");
+  out.spacings = table.number_or("spacings", 0);
+  if (!(out.spacings > 0)) table.missing("spacings", "how many spacings from there, above 0");
+  table.finish();
+  return out;
+}
+
 }  // namespace
+
+Selector read_selector(StrictTable& table) {
+  const auto part = [&table](const char* key) -> std::optional<std::string> {
+    const scene::ConfigNode* node = table.node(key);
+    if (node == nullptr || node->kind != scene::ConfigNode::Kind::array)
+      return table.optional_text(key);
+    std::string pattern;
+    for (const std::string& text : table.texts(key))
+      pattern += (pattern.empty() ? "" : "\n") + text;
+    return pattern;
+  };
+  return {part("scene"), part("method"), part("variant")};
+}
 
 CaseEntry read_case(StrictTable table, bool full) {
   Case entry;
@@ -139,6 +167,30 @@ Reference read_reference(StrictTable table) {
   return reference;
 }
 
+Comparison read_comparison(StrictTable table) {
+  Comparison comparison;
+  comparison.where = table.where();
+  comparison.name = table.text_or("name", comparison.name);
+  if (comparison.name.empty() ||
+      comparison.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") !=
+          std::string::npos)
+    table.reject(*table.node("name"), "small letters, digits and _");
+  comparison.fields = table.texts("fields");
+  if (comparison.fields.empty())
+    table.missing("fields", "scalar point fields of frames, such as [\"plastic_strain\"]");
+  StrictTable reference = table.table("reference", "{ method = \"fem\", variant = \"T6\" }");
+  comparison.reference = read_selector(reference);
+  comparison.reference_resolution = reference.optional_number("resolution");
+  reference.finish();
+  comparison.selector = read_selector(table);
+  if (!comparison.selector.scene) comparison.selector.scene = comparison.reference.scene;
+  if (table.node("leave_out"))
+    comparison.leave_out = read_leave_out(table.table(
+        "leave_out", "{ axis = \"y\", low = \"0 m\", high = \"1 m\", spacings = 4 }"));
+  table.finish();
+  return comparison;
+}
+
 Claim read_claim(StrictTable table) {
   Claim claim;
   claim.where = table.where();
@@ -150,7 +202,8 @@ Claim read_claim(StrictTable table) {
                                  {{"slope", ClaimKind::slope},
                                   {"value", ClaimKind::value},
                                   {"ratio", ClaimKind::ratio},
-                                  {"gci", ClaimKind::gci}});
+                                  {"gci", ClaimKind::gci},
+                                  {"minimum", ClaimKind::minimum}});
   claim.selector = read_selector(table);
   claim.quantity = table.text("quantity");
   claim.resolution = table.optional_number("resolution");
@@ -162,39 +215,13 @@ Claim read_claim(StrictTable table) {
   display_factor(claim.unit, claim.where);
   claim.minimum = table.optional_number("min");
   claim.maximum = table.optional_number("max");
-  if (!claim.minimum && !claim.maximum) table.missing("max", "a bound: min, max or both");
+  read_place(table, claim);
+  if (!claim.minimum && !claim.maximum && !claim.setting_minimum && !claim.setting_maximum)
+    table.missing("max", "a bound: min, max or both");
   claim.full_only = table.flag_or("full_only", false);
   read_other(table, claim);
   table.finish();
   return claim;
-}
-
-Plot read_plot(StrictTable table) {
-  Plot plot;
-  plot.kind = choose<std::string>(table, "kind",
-                                  {{"convergence", "convergence"},
-                                   {"cost", "cost"},
-                                   {"history", "history"},
-                                   {"sweep", "sweep"}});
-  plot.quantity = table.text("quantity");
-  plot.title = table.text_or("title", "");
-  if (plot.kind == "sweep") plot.setting = table.text("setting");
-  plot.selector = read_selector(table);
-  plot.resolution = table.optional_number("resolution");
-  plot.slope = table.optional_number("slope");
-  table.finish();
-  return plot;
-}
-
-Picture read_picture(StrictTable table) {
-  Picture picture;
-  picture.selector = read_selector(table);
-  picture.resolution = table.optional_number("resolution");
-  picture.color = table.text("color");
-  picture.caption = table.text_or("caption", "");
-  picture.scale_displacement = table.number_or("scale_displacement", 1);
-  table.finish();
-  return picture;
 }
 
 }  // namespace concord::studies

@@ -1,6 +1,7 @@
 #pragma once
 // Readers of the entries of a study file, one function an entry.
 
+#include "scene/suggest.hpp"
 #include "studies/driver/strict_table.hpp"
 #include "studies/driver/study_file.hpp"
 
@@ -17,8 +18,27 @@ struct CaseEntry {
 CaseEntry read_case(StrictTable table, bool full);
 Fit read_fit(StrictTable table);
 Reference read_reference(StrictTable table);
+Comparison read_comparison(StrictTable table);
 Claim read_claim(StrictTable table);
 Plot read_plot(StrictTable table);
 Picture read_picture(StrictTable table);
+
+/// Keys scene, method, variant of any of them.
+Selector read_selector(StrictTable& table);
+
+/// One of `choices` by its name; `fallback` where the key is absent. Throws InputError for
+/// another word, or for none where there is no fallback.
+template <class T>
+T choose(StrictTable& table, const std::string& key,
+         const std::vector<std::pair<std::string, T>>& choices, const T* fallback = nullptr) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : choices) words.push_back(name);
+  const auto word = table.optional_text(key);
+  if (!word && fallback) return *fallback;
+  if (!word) table.missing(key, scene::allowed_words("", words));
+  for (const auto& [name, value] : choices)
+    if (name == *word) return value;
+  table.reject(*table.node(key), scene::allowed_words(*word, words));
+}
 
 }  // namespace concord::studies

@@ -18,9 +18,11 @@ void check_selects(const std::vector<Case>& all, const Selector& selector, bool 
     titles.push_back(entry.title());
     if (entry.matches(selector)) matching.push_back(entry.title());
   }
-  const std::string found =
+  std::string found =
       fmt::format("scene {}, method {}, variant {}", selector.scene.value_or("any"),
                   selector.method.value_or("any"), selector.variant.value_or("any"));
+  for (std::size_t at; (at = found.find('\n')) != std::string::npos;)
+    found.replace(at, 1, " or ");
   if (matching.empty())
     throw InputError(where, key, found,
                      "a case of this study: " + fmt::format("{}", fmt::join(titles, "; ")));
@@ -41,12 +43,16 @@ void check(const Study& study, const std::vector<Case>& all) {
     for (std::size_t j = 0; j < i; ++j)
       if (study.claims[j].id == claim.id)
         throw InputError(claim.where, "claim.id", claim.id, "an id that no other claim has");
-    check_selects(all, claim.selector, claim.kind != ClaimKind::value, claim.where, "claim");
-    if (claim.kind == ClaimKind::ratio)
-      check_selects(all, claim.other, true, claim.where, "claim.other");
+    const bool many = claim.kind == ClaimKind::value || claim.kind == ClaimKind::minimum;
+    check_selects(all, claim.selector, !many, claim.where, "claim");
+    if (claim.divided) check_selects(all, claim.other, true, claim.where, "claim.other");
   }
   for (const Reference& reference : study.references)
     check_selects(all, reference.selector, true, reference.where, "reference");
+  for (const Comparison& comparison : study.comparisons) {
+    check_selects(all, comparison.reference, true, comparison.where, "compare.reference");
+    check_selects(all, comparison.selector, false, comparison.where, "compare");
+  }
 }
 
 Study parse_study(const std::filesystem::path& file, bool full) {
@@ -59,6 +65,9 @@ Study parse_study(const std::filesystem::path& file, bool full) {
   study.source = table.text("source");
   study.paper_statement = table.text_or("paper_statement", "");
   study.timing = table.flag_or("timing", false);
+  study.balance_tolerance = table.optional_number("balance_tolerance");
+  if (study.balance_tolerance && !(*study.balance_tolerance > 0))
+    table.reject(*table.node("balance_tolerance"), "a number above 0");
   std::vector<Case> all;
   for (const StrictTable& entry : table.tables("case")) {
     CaseEntry read = read_case(entry, full);
@@ -69,6 +78,8 @@ Study parse_study(const std::filesystem::path& file, bool full) {
   for (const StrictTable& entry : table.tables("fit")) study.fits.push_back(read_fit(entry));
   for (const StrictTable& entry : table.tables("reference"))
     study.references.push_back(read_reference(entry));
+  for (const StrictTable& entry : table.tables("compare"))
+    study.comparisons.push_back(read_comparison(entry));
   for (const StrictTable& entry : table.tables("claim"))
     study.claims.push_back(read_claim(entry));
   for (const StrictTable& entry : table.tables("plot")) study.plots.push_back(read_plot(entry));
@@ -82,9 +93,24 @@ Study parse_study(const std::filesystem::path& file, bool full) {
 }  // namespace
 
 bool Case::matches(const Selector& selector) const {
-  return (!selector.scene || *selector.scene == scene) &&
-         (!selector.method || *selector.method == method) &&
-         (!selector.variant || *selector.variant == variant);
+  const auto fits = [](const std::optional<std::string>& pattern, const std::string& text) {
+    return !pattern || matches_pattern(*pattern, text);
+  };
+  return fits(selector.scene, scene) && fits(selector.method, method) &&
+         fits(selector.variant, variant);
+}
+
+bool matches_pattern(std::string_view pattern, std::string_view text) {
+  if (const std::size_t end = pattern.find('\n'); end != std::string_view::npos)
+    return matches_pattern(pattern.substr(0, end), text) ||
+           matches_pattern(pattern.substr(end + 1), text);
+  const std::size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == text;
+  if (!text.starts_with(pattern.substr(0, star))) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (std::size_t begin = star; begin <= text.size(); ++begin)
+    if (matches_pattern(rest, text.substr(begin))) return true;
+  return false;
 }
 
 std::string Case::title() const {

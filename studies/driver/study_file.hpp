@@ -3,11 +3,13 @@
 
 #include "scene/errors.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace concord::studies {
@@ -15,10 +17,14 @@ namespace concord::studies {
 /// Largest perturbation, as a fraction of the spacing: beyond it neighbours may change places.
 inline constexpr double max_perturb = 0.45;
 
-/// Scene, method and variant of a case; a part left out matches any.
+/// Scene, method and variant of a case; a part left out matches any. A part is a pattern, see
+/// matches_pattern.
 struct Selector {
   std::optional<std::string> scene, method, variant;
 };
+
+/// Whether a text is a pattern's: alternatives, a line each, in which "*" stands for any text.
+bool matches_pattern(std::string_view pattern, std::string_view text);
 
 /// One curve: a scene, a method with settings, resolutions and seeds.
 struct Case {
@@ -48,7 +54,26 @@ struct Reference {
   SourcePosition where;
 };
 
-enum class ClaimKind { slope, value, ratio, gci };
+/// Points close to two planes across an axis do not count: there a comparison says nothing.
+struct LeaveOut {
+  int axis = 0;              ///< 0, 1, 2: x, y, z of the reference position
+  double low = 0, high = 0;  ///< of the planes [m]
+  double spacings = 0;       ///< how far from them, in h of the run compared
+};
+
+/// Fields of runs against those of a reference run, Eq. (29) of the Continuum Bond Method
+/// paper.
+struct Comparison {
+  std::string name = "difference";             ///< of the errors and of the file
+  std::vector<std::string> fields;             ///< scalar point fields of frames
+  Selector reference;                          ///< one case
+  std::optional<double> reference_resolution;  ///< absent: its finest
+  Selector selector;  ///< cases compared; of the reference's scene where none is given
+  std::optional<LeaveOut> leave_out;
+  SourcePosition where;
+};
+
+enum class ClaimKind { slope, value, ratio, gci, minimum };
 enum class Pool { max, min, mean };
 
 struct Claim {
@@ -57,36 +82,74 @@ struct Claim {
   Selector selector;
   std::string quantity;
   std::optional<double> resolution;
-  Selector other;  ///< ratio: the denominator's case, parts left out as in `selector`
+  Selector other;  ///< ratio, minimum: the denominator's case, parts left out as in `selector`
+  bool divided = false;  ///< minimum: there is a denominator
   std::string other_quantity;
   std::optional<double> other_resolution;
   Pool over_seeds = Pool::max;
   std::string unit = "1";                  ///< of min, max and the shown value
   std::optional<double> minimum, maximum;  ///< in `unit`
+  std::string setting;  ///< minimum: the setting whose value at the minimum is bounded
+  std::optional<double> setting_minimum, setting_maximum;
   bool full_only = false;
   SourcePosition where;
 };
 
+/// A horizontal line of a sweep: what a case without the setting reaches.
+struct Baseline {
+  Selector selector;
+  std::optional<double> resolution;
+  std::string quantity, label;
+};
+
+using Range = std::array<double, 2>;
+
+/// Part of a plane: low and high end along x and y.
+struct Window {
+  std::optional<Range> x, y;
+};
+
 struct Plot {
-  std::string kind, quantity, title, setting;
+  std::string kind, quantity, title, setting, setting_y;
   Selector selector;
   std::optional<double> resolution, slope;
+  std::vector<double> resolutions;  ///< curve; empty: all
+  std::string x, y;                 ///< curve: columns of history.csv
+  std::string x_label, y_label, label;
+  std::optional<double> x_scale, y_scale;
+  std::vector<Baseline> baseline;
+  std::optional<Window> inset;  ///< curve: enlarged in a corner
+};
+
+/// What picks a frame and its values.
+struct Panel {
+  Selector selector;
+  std::optional<double> resolution;  ///< absent: the finest that has frames
+  std::string color, caption;      ///< color: a point field; of a panel: absent, the picture's
+  std::optional<bool> difference;  ///< the run's difference.hdf instead of its last frame
 };
 
 struct Picture {
-  Selector selector;
-  std::optional<double> resolution;  ///< absent: the finest that has frames
-  std::string color, caption;
+  Panel body;
   double scale_displacement = 1;
+  std::vector<Panel> panels;      ///< bodies side by side; empty: one body
+  std::optional<double> columns;  ///< panels in a row
+  bool common_range = false;      ///< one scale for all panels
+  std::optional<Range> range;     ///< ends of the scale
+  std::optional<Window> crop;     ///< part of the plane shown [m]
+  std::optional<double> time;     ///< of the frame; absent: the last
 };
 
 struct Study {
   std::string name, title, question, source, paper_statement;
   bool timing = false;  ///< one run at a time
+  /// Largest invariants.energy_drift of a run whose energy balance closes; absent: not judged.
+  std::optional<double> balance_tolerance;
   bool full = false;
   std::vector<Case> cases;  ///< those of the chosen mode only
   std::vector<Fit> fits;
   std::vector<Reference> references;
+  std::vector<Comparison> comparisons;
   std::vector<Claim> claims;
   std::vector<Plot> plots;
   std::vector<Picture> pictures;

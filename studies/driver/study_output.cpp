@@ -1,6 +1,7 @@
 #include "studies/driver/study_output.hpp"
 
 #include "scene/output.hpp"
+#include "studies/driver/drawing_json.hpp"
 #include "studies/driver/tables.hpp"
 
 #include <algorithm>
@@ -13,20 +14,6 @@ using nlohmann::json;
 
 json number_or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? json(*value) : json(nullptr);
-}
-
-void put(json& object, const char* key, const std::optional<std::string>& value) {
-  if (value) object[key] = *value;
-}
-
-void put(json& object, const char* key, const std::optional<double>& value) {
-  if (value && std::isfinite(*value)) object[key] = *value;
-}
-
-void put(json& object, const Selector& selector) {
-  put(object, "scene", selector.scene);
-  put(object, "method", selector.method);
-  put(object, "variant", selector.variant);
 }
 
 void name_case(json& object, const Case& entry) {
@@ -45,6 +32,8 @@ const char* to_text(ClaimKind kind) {
       return "ratio";
     case ClaimKind::gci:
       return "gci";
+    case ClaimKind::minimum:
+      return "minimum";
   }
   return "";
 }
@@ -65,6 +54,8 @@ json claim_json(const ClaimResult& result) {
   put(object, "resolution", claim.resolution);
   put(object, "min", claim.minimum);
   put(object, "max", claim.maximum);
+  put(object, "place", result.place);
+  if (!claim.setting.empty()) object["setting"] = claim.setting;
   if (!result.reason.empty()) object["reason"] = result.reason;
   return object;
 }
@@ -88,6 +79,8 @@ json row_json(const StudyResult& result, const Row& row) {
   object["scene_settings"] = entry.scene_set;
   object["run"] = row.run.string();
   if (!row.error.empty()) object["error"] = row.error;
+  if (const auto closes = balance_closes(*result.study, row))
+    object["balance"] = balance_text(*closes);
   json orders = json::object();
   for (std::size_t i = 0; i < result.study->fits.size(); ++i) {
     const std::string& quantity = result.study->fits[i].quantity;
@@ -129,25 +122,6 @@ json reference_json(const StudyResult& result, const ReferenceResult& reference)
   return object;
 }
 
-json plot_json(const Plot& plot) {
-  json object{{"kind", plot.kind}, {"quantity", plot.quantity}};
-  if (!plot.title.empty()) object["title"] = plot.title;
-  if (!plot.setting.empty()) object["setting"] = plot.setting;
-  put(object, plot.selector);
-  put(object, "resolution", plot.resolution);
-  put(object, "slope", plot.slope);
-  return object;
-}
-
-json picture_json(const Picture& picture) {
-  json object{{"color", picture.color},
-              {"scale_displacement", picture.scale_displacement},
-              {"caption", picture.caption}};
-  if (picture.resolution) object["resolution"] = *picture.resolution;
-  put(object, picture.selector);
-  return object;
-}
-
 }  // namespace
 
 bool StudyResult::passed() const {
@@ -166,6 +140,7 @@ json study_json(const StudyResult& result) {
               {"mode", study.full ? "full" : "quick"},
               {"timing", study.timing},
               {"verdict", result.passed() ? "pass" : "fail"}};
+  if (study.balance_tolerance) object["balance_tolerance"] = *study.balance_tolerance;
   if (result.interrupted) object["interrupted"] = true;
   for (const char* list : {"claims", "rows", "fits", "references", "plots", "pictures"})
     object[list] = json::array();
@@ -174,9 +149,9 @@ json study_json(const StudyResult& result) {
   for (const FitResult& fit : result.fits) object["fits"].push_back(fit_json(result, fit));
   for (const ReferenceResult& reference : result.references)
     object["references"].push_back(reference_json(result, reference));
-  for (const Plot& plot : study.plots) object["plots"].push_back(plot_json(plot));
+  for (const Plot& plot : study.plots) object["plots"].push_back(plot_json(study, plot));
   for (const Picture& picture : study.pictures)
-    object["pictures"].push_back(picture_json(picture));
+    object["pictures"].push_back(picture_json(study, picture));
   return object;
 }
 

@@ -45,6 +45,8 @@ Table runs_table(const StudyResult& result) {
   Table table{"runs", {"scene", "method", "variant", "resolution", "seed"}, {}};
   table.columns.insert(table.columns.end(), costs.begin(), costs.end());
   table.columns.insert(table.columns.end(), quantities.begin(), quantities.end());
+  const bool balance = result.study->balance_tolerance.has_value();
+  if (balance) table.columns.emplace_back("energy balance");
   table.columns.emplace_back("error");
   for (const Row& row : result.rows) {
     Cells cells = case_cells(result.study->cases[row.case_index]);
@@ -53,6 +55,8 @@ Table runs_table(const StudyResult& result) {
     for (const std::string& cost : costs) cells.push_back(exact(value_of(row, cost)));
     for (const std::string& quantity : quantities)
       cells.push_back(exact(value_of(row, quantity)));
+    const auto closes = balance_closes(*result.study, row);
+    if (balance) cells.emplace_back(closes ? balance_text(*closes) : "");
     cells.push_back(row.error);
     table.cells.push_back(std::move(cells));
   }

@@ -97,3 +97,103 @@ TEST(Claims, OfTheFullReportAreListedInTheQuickOne) {
   study.full = true;
   EXPECT_EQ(judge_one(study, claim, sample_rows(study)).verdict, Verdict::fail);
 }
+
+namespace {
+
+/// Three cases with psi .01, .1, 1 whose error is least at .1, and one without psi.
+Study swept() {
+  Study study = sample_study();
+  Case base = study.cases[0];
+  base.method = "tlsph";
+  base.resolutions = {4};
+  base.seeds = {1};
+  for (const char* psi : {"0.01", "0.1", "1"}) {
+    Case one = base;
+    one.variant = std::string("r 3, psi ") + psi;
+    one.set["psi"] = psi;
+    study.cases.push_back(one);
+  }
+  return study;
+}
+
+std::vector<Row> swept_rows(const Study& study) {
+  auto rows = sample_rows(study);
+  const double error[] = {0.07, 0.03, 0.05};
+  for (Row& row : rows)
+    if (row.case_index > 0)
+      row.summary["errors"]["displacement_l2"] = error[row.case_index - 1];
+  return rows;
+}
+
+Claim least_claim() {
+  Claim claim;
+  claim.id = "least";
+  claim.kind = ClaimKind::minimum;
+  claim.selector = {std::nullopt, "tlsph", "r 3*"};
+  claim.quantity = "errors.displacement_l2";
+  claim.setting = "psi";
+  claim.setting_minimum = 0.05;
+  claim.setting_maximum = 0.15;
+  return claim;
+}
+
+}  // namespace
+
+TEST(Claims, MinimumOverASweepAndItsPlace) {
+  Study study = swept();
+  const auto rows = swept_rows(study);
+  Claim claim = least_claim();
+  claim.minimum = 0.02;
+  claim.maximum = 0.04;
+  const ClaimResult result = judge_one(study, claim, rows);
+  EXPECT_EQ(result.verdict, Verdict::pass) << result.reason;
+  EXPECT_DOUBLE_EQ(*result.measured, 0.03);
+  EXPECT_DOUBLE_EQ(*result.place, 0.1);
+  EXPECT_EQ(bound_text(claim), ">= 0.02 and <= 0.04, at psi 0.05 to 0.15");
+  claim.setting_minimum = 0.2;
+  claim.setting_maximum.reset();
+  const ClaimResult elsewhere = judge_one(study, claim, rows);
+  EXPECT_EQ(elsewhere.verdict, Verdict::fail);
+  EXPECT_NE(elsewhere.reason.find("at psi 0.1"), std::string::npos) << elsewhere.reason;
+  claim.setting = "absent";
+  EXPECT_EQ(judge_one(study, claim, rows).verdict, Verdict::fail) << "a place is asked for";
+}
+
+TEST(Claims, MinimumOverAnotherCase) {
+  Study study = swept();
+  Claim claim = least_claim();
+  claim.divided = true;
+  claim.other = {std::nullopt, "delaunay", std::nullopt};
+  claim.other_quantity = claim.quantity;
+  claim.other_resolution = 4;
+  claim.minimum = 0.1;
+  EXPECT_DOUBLE_EQ(*judge_one(study, claim, swept_rows(study)).measured, 0.03 / (1.2 / 16));
+}
+
+TEST(Claims, ACaseWithoutAValueCannotHoldTheMinimumAndIsNamed) {
+  Study study = swept();
+  auto rows = swept_rows(study);
+  rows.back().error = "no equilibrium";
+  const ClaimResult result = judge_one(study, least_claim(), rows);
+  EXPECT_EQ(result.verdict, Verdict::pass);
+  EXPECT_NE(result.reason.find("no equilibrium"), std::string::npos) << result.reason;
+  for (Row& row : rows) row.error = "no equilibrium";
+  EXPECT_EQ(judge_one(study, least_claim(), rows).verdict, Verdict::fail);
+}
+
+TEST(Claims, SayWhenTheEnergyBalanceOfARunDoesNotClose) {
+  Study study = sample_study();
+  auto rows = sample_rows(study);
+  rows[1].summary["invariants"] = {{"energy_drift", -0.5}};
+  EXPECT_FALSE(balance_closes(study, rows[1])) << "not judged without a tolerance";
+  study.balance_tolerance = 0.01;
+  EXPECT_EQ(balance_closes(study, rows[1]), false);
+  EXPECT_EQ(balance_closes(study, rows[0]), std::nullopt);
+  const ClaimResult result = judge_one(study, value_claim(4, Pool::max), rows);
+  EXPECT_EQ(result.verdict, Verdict::pass);
+  EXPECT_NE(
+      result.reason.find("does not close: delaunay (xi 1) on block, resolution 4, seed 2"),
+      std::string::npos)
+      << result.reason;
+  EXPECT_TRUE(judge_one(study, value_claim(8, Pool::max), rows).reason.empty());
+}

@@ -69,6 +69,57 @@ TEST(StudyJson, AFailedRunIsARowWithItsError) {
   EXPECT_EQ(study_json(result)["rows"][0]["error"], "det F <= 0");
 }
 
+TEST(StudyJson, MarksRunsWhoseBalanceDoesNotClose) {
+  Study study = with_claim(1.8);
+  study.balance_tolerance = 1e-2;
+  StudyResult result = judged(study);
+  result.rows[0].summary["invariants"]["energy_drift"] = 1e-3;
+  result.rows[1].summary["invariants"]["energy_drift"] = 0.1;
+  const auto json = study_json(result);
+  EXPECT_EQ(json["rows"][0]["balance"], "closes");
+  EXPECT_EQ(json["rows"][1]["balance"], "does not close");
+  EXPECT_FALSE(json["rows"][2].contains("balance")) << "no drift, no verdict";
+  const Table runs = tables_of(result).front();
+  ASSERT_EQ(runs.columns[runs.columns.size() - 2], "energy balance");
+  EXPECT_EQ(runs.cells[1][runs.columns.size() - 2], "does not close");
+}
+
+TEST(StudyJson, PatternsOfPlotsBecomeTheCasesTheyStandFor) {
+  Study study = sample_study();
+  study.cases.push_back(study.cases[0]);
+  study.cases.back().variant = "xi 0";
+  Plot plot;
+  plot.kind = "curve";
+  plot.x = "a";
+  plot.selector.variant = "xi*";
+  study.plots.push_back(plot);
+  const auto json = study_json(judged(study))["plots"][0];
+  EXPECT_EQ(json["variant"], (std::vector<std::string>{"xi 1", "xi 0"}));
+  EXPECT_EQ(json["x"], "a");
+  EXPECT_FALSE(json.contains("quantity"));
+}
+
+TEST(StudyJson, PicturesCarryTheirPanelsRangeAndCrop) {
+  Study study = sample_study();
+  Picture picture;
+  picture.body.color = "s";
+  picture.range = Range{0, 0.5};
+  picture.crop = Window{Range{-1, 1}, std::nullopt};
+  Panel panel;
+  panel.selector.method = "delaunay";
+  panel.difference = true;
+  picture.panels.push_back(panel);
+  study.pictures.push_back(picture);
+  const auto json = study_json(judged(study))["pictures"][0];
+  EXPECT_EQ(json["range"], (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(json["crop"]["x"], (std::vector<double>{-1, 1}));
+  EXPECT_FALSE(json["crop"].contains("y"));
+  EXPECT_EQ(json["panels"][0]["method"], "delaunay");
+  EXPECT_EQ(json["panels"][0]["difference"], true);
+  EXPECT_EQ(json["color"], "s");
+  EXPECT_FALSE(json["panels"][0].contains("color")) << "the picture's";
+}
+
 TEST(Tables, CellsAreEscaped) {
   const Table table{"t", {"a", "b"}, {{"x, y", "p|q"}, {"say \"so\"", ""}}};
   EXPECT_EQ(table.csv(), "a,b\n\"x, y\",p|q\n\"say \"\"so\"\"\",\n");

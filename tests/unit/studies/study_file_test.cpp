@@ -128,3 +128,74 @@ TEST(Studies, OfTheRepositoryRead) {
       EXPECT_FALSE(study.claims.empty()) << name << " says nothing that could fail";
     }
 }
+
+TEST_F(StudyFile, AStarInASelectorStandsForAnyText) {
+  EXPECT_TRUE(matches_pattern("xi 0*", "xi 0, algorithm 5"));
+  EXPECT_TRUE(matches_pattern("*grips*", "xi 0, grips 12"));
+  EXPECT_TRUE(matches_pattern("a*b*c", "a-b-bc"));
+  EXPECT_TRUE(matches_pattern("fem\ncbm", "cbm")) << "alternatives";
+  EXPECT_FALSE(matches_pattern("a*b", "a-b-c"));
+  EXPECT_FALSE(matches_pattern("xi 0", "xi 0, algorithm 5"));
+  const std::string claim = one_case +
+                            "sweep = { psi = [0, 1] }\n[[claim]]\nid = \"a\"\n"
+                            "statement = \"s\"\nsource = \"s\"\nquantity = \"h\"\nmax = 1\n";
+  EXPECT_NO_THROW(read(claim + "kind = \"value\"\nvariant = \"psi*\"\n"));
+  EXPECT_NO_THROW(read(claim + "kind = \"value\"\nvariant = [\"psi 0\", \"psi 1\"]\n"));
+  expect_error(claim + "kind = \"slope\"\nvariant = \"psi*\"\n", 9, "claim");
+  expect_error(claim + "kind = \"value\"\nvariant = \"xi*\"\n", 9, "claim");
+}
+
+TEST_F(StudyFile, ReadsComparisons) {
+  const std::string compare = one_case +
+                              "[[compare]]\nfields = [\"s\"]\n"
+                              "reference = { method = \"delaunay\", scene = \"block\" }\n";
+  const Study study = read(compare + "leave_out = { axis = \"y\", low = \"1 mm\", high = "
+                                     "\"40 mm\", spacings = 4 }\n");
+  ASSERT_EQ(study.comparisons.size(), 1u);
+  EXPECT_EQ(study.comparisons[0].selector.scene, "block")
+      << "the reference's where none is given";
+  EXPECT_EQ(study.comparisons[0].leave_out->axis, 1);
+  EXPECT_DOUBLE_EQ(study.comparisons[0].leave_out->low, 1e-3);
+  EXPECT_DOUBLE_EQ(study.comparisons[0].leave_out->high, 40e-3);
+  expect_error(compare + "method = \"fem\"\n", 8, "compare");
+  expect_error(compare + "leave_out = { axis = \"w\" }\n", 11, "axis");
+  expect_error(compare + "leave_out = { axis = \"y\", low = \"1 s\" }\n", 11, "low");
+  expect_error(one_case + "[[compare]]\nfields = []\n", 9, "fields");
+  expect_error(one_case + "[[compare]]\nfields = [\"s\"]\nreference = { method = \"x\" }\n", 8,
+               "compare.reference");
+}
+
+TEST_F(StudyFile, ReadsMinimaCurvesMapsAndPanels) {
+  const std::string claim = one_case + "sweep = { psi = [0.1, 1] }\n[[claim]]\nid = \"a\"\n"
+                                       "statement = \"s\"\nsource = \"s\"\nquantity = \"h\"\n";
+  const Study least =
+      read(claim + "kind = \"minimum\"\nsetting = \"psi\"\nsetting_max = 0.2\n");
+  EXPECT_EQ(least.claims[0].setting_maximum, 0.2);
+  EXPECT_FALSE(least.claims[0].divided);
+  expect_error(claim + "kind = \"minimum\"\nsetting = \"psi\"\n", 9, "max");
+  expect_error(claim + "kind = \"minimum\"\nsetting_max = 1\n", 9, "setting");
+  expect_error(claim + "kind = \"value\"\nmax = 1\nsetting = \"psi\"\n", 16, "setting");
+
+  const Study drawn =
+      read(one_case +
+           "[[plot]]\nkind = \"curve\"\nx = \"a\"\ny = \"b\"\ny_scale = -1\n"
+           "[[plot]]\nkind = \"map\"\nquantity = \"h\"\nsetting = \"psi\"\nsetting_y = \"r\"\n"
+           "[[plot]]\nkind = \"sweep\"\nquantity = \"h\"\nsetting = \"psi\"\n"
+           "baseline = [{ method = \"delaunay\" }]\n"
+           "[[picture]]\ncolor = \"s\"\nrange = \"common\"\ndifference = true\n"
+           "panels = [{ method = \"delaunay\", resolution = 4, caption = \"c\" }]\n");
+  EXPECT_EQ(drawn.plots[0].y_scale, -1);
+  EXPECT_EQ(drawn.plots[1].setting_y, "r");
+  EXPECT_EQ(drawn.plots[2].baseline.at(0).selector.method, "delaunay");
+  EXPECT_EQ(drawn.pictures[0].body.difference, true);
+  EXPECT_TRUE(drawn.pictures[0].common_range);
+  EXPECT_EQ(drawn.pictures[0].panels.at(0).resolution, 4);
+  const Study windows =
+      read(one_case + "[[picture]]\ncolor = \"s\"\nrange = [0, 0.5]\ncrop = { y = [-1, 1] }\n");
+  EXPECT_EQ(windows.pictures[0].range->at(1), 0.5);
+  EXPECT_FALSE(windows.pictures[0].crop->x);
+  expect_error(one_case + "[[picture]]\ncolor = \"s\"\nrange = [1, 0]\n", 10, "range");
+  expect_error(one_case + "[[picture]]\ncolor = \"s\"\nrange = \"own\"\n", 10, "range");
+  expect_error(one_case + "[[picture]]\ncolor = \"s\"\npanels = [{ metod = \"fem\" }]\n", 10,
+               "metod");
+}

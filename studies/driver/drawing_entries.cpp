@@ -1,0 +1,116 @@
+// Readers of [[plot]] and [[picture]].
+
+#include "studies/driver/study_entries.hpp"
+
+namespace concord::studies {
+namespace {
+
+/// [low, high] with low < high.
+std::optional<Range> read_range(StrictTable& table, const std::string& key) {
+  const auto numbers = table.numbers(key);
+  if (numbers.empty()) return std::nullopt;
+  if (numbers.size() != 2 || !(numbers[0] < numbers[1]))
+    table.reject(*table.node(key), "[low, high], two numbers with low < high");
+  return Range{numbers[0], numbers[1]};
+}
+
+std::optional<Window> read_window(StrictTable& table, const std::string& key) {
+  if (!table.node(key)) return std::nullopt;
+  StrictTable inner = table.table(key, "{ x = [0, 1], y = [0, 1] }");
+  Window window{read_range(inner, "x"), read_range(inner, "y")};
+  inner.finish();
+  return window;
+}
+
+std::vector<Baseline> read_baseline(StrictTable& table) {
+  std::vector<Baseline> baseline;
+  for (StrictTable& entry : table.inner_tables("baseline")) {
+    Baseline line;
+    line.selector = read_selector(entry);
+    line.resolution = entry.optional_number("resolution");
+    line.quantity = entry.text_or("quantity", "");
+    line.label = entry.text_or("label", "");
+    entry.finish();
+    baseline.push_back(std::move(line));
+  }
+  return baseline;
+}
+
+void read_axes(StrictTable& table, Plot& plot) {
+  plot.x_label = table.text_or("x_label", "");
+  plot.y_label = table.text_or("y_label", "");
+  plot.label = table.text_or("label", "");
+  plot.x_scale = table.optional_number("x_scale");
+  plot.y_scale = table.optional_number("y_scale");
+}
+
+Panel read_panel(StrictTable& table) {
+  Panel panel;
+  panel.color = table.text_or("color", "");
+  panel.selector = read_selector(table);
+  panel.resolution = table.optional_number("resolution");
+  panel.caption = table.text_or("caption", "");
+  if (table.node("difference")) panel.difference = table.flag_or("difference", false);
+  return panel;
+}
+
+void read_color_range(StrictTable& table, Picture& picture) {
+  const scene::ConfigNode* node = table.node("range");
+  if (node == nullptr) return;
+  if (node->kind == scene::ConfigNode::Kind::array) {
+    picture.range = read_range(table, "range");
+    return;
+  }
+  picture.common_range = table.text("range") == "common";
+  if (!picture.common_range) table.reject(*node, "\"common\" or [low, high]");
+}
+
+}  // namespace
+
+Plot read_plot(StrictTable table) {
+  Plot plot;
+  plot.kind = choose<std::string>(table, "kind",
+                                  {{"convergence", "convergence"},
+                                   {"cost", "cost"},
+                                   {"history", "history"},
+                                   {"sweep", "sweep"},
+                                   {"curve", "curve"},
+                                   {"map", "map"}});
+  plot.title = table.text_or("title", "");
+  if (plot.kind == "curve") {
+    plot.x = table.text("x");
+    plot.y = table.text("y");
+    plot.resolutions = table.positive_numbers("resolutions");
+    plot.inset = read_window(table, "inset");
+  } else {
+    plot.quantity = table.text("quantity");
+  }
+  if (plot.kind == "sweep" || plot.kind == "map") plot.setting = table.text("setting");
+  if (plot.kind == "sweep") plot.baseline = read_baseline(table);
+  if (plot.kind == "map") plot.setting_y = table.text("setting_y");
+  read_axes(table, plot);
+  plot.selector = read_selector(table);
+  plot.resolution = table.optional_number("resolution");
+  plot.slope = table.optional_number("slope");
+  table.finish();
+  return plot;
+}
+
+Picture read_picture(StrictTable table) {
+  Picture picture;
+  picture.body = read_panel(table);
+  if (picture.body.color.empty()) table.missing("color", "a point field of the frames");
+  picture.columns = table.optional_number("columns");
+  picture.scale_displacement = table.number_or("scale_displacement", 1);
+  for (StrictTable& entry : table.inner_tables("panels")) {
+    picture.panels.push_back(read_panel(entry));
+    entry.finish();
+  }
+  read_color_range(table, picture);
+  picture.crop = read_window(table, "crop");
+  picture.time = table.optional_number("time");
+  table.finish();
+  return picture;
+}
+
+}  // namespace concord::studies
