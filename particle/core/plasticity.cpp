@@ -1,3 +1,5 @@
+// Equations (PLA.n): README.md of this folder.
+
 #include "particle/core/plasticity.hpp"
 
 #include "particle/core/plasticity_plane.hpp"
@@ -7,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -59,7 +62,7 @@ void decompose_space(const Mat3& x, TrialStrain& trial) {
   trial.axes = solver.eigenvectors();
 }
 
-/// b_e - I = H + H^T + H H^T + F A F^T: small strains keep their relative accuracy.
+/// (PLA.1), (PLA.2): small strains keep their relative accuracy.
 TrialStrain trial_strain(const Mat3& H, const Mat3& A) {
   TrialStrain trial;
   const double j = scene::volume_change(H);
@@ -87,8 +90,8 @@ double equivalent_stress(double mu, const Vec3& deviator) {
   return mu * std::sqrt(6.0) * deviator.norm();
 }
 
-/// C_p^-1 - I = F^-1 b_e F^-T - I. Near the identity the strains are subtracted, F^-1 ((b_e -
-/// I) - (F F^T - I)) F^-T; where F F^T is not near I, that would cancel.
+/// (PLA.4), C_p^-1 - I = F^-1 b_e F^-T - I. Near the identity the strains are subtracted, F^-1
+/// ((b_e - I) - (F F^T - I)) F^-T; where F F^T is not near I, that would cancel.
 Mat3 plastic_metric(const TrialStrain& trial, const Vec3& e, const Mat3& G) {
   const bool far = trial.metric.cwiseAbs().maxCoeff() > 0.5;
   Vec3 b;
@@ -158,13 +161,13 @@ J2Hencky::Update J2Hencky::update(const Mat3& H, const PlasticState& old) const 
   Vec3 deviator = trial.deviator;
   const Mat3 G = scene::inverse_transpose(Mat3(H + Mat3::Identity()));
   if (u.yields) {
-    u.state.eps_p = old.eps_p + plastic_increment(q, old.eps_p);
+    u.state.eps_p = old.eps_p + plastic_increment(q, old.eps_p);  // (PLA.3)
     u.tau_eq = flow_stress(u.state.eps_p);
     deviator *= u.tau_eq / q;
     u.state.A = plastic_metric(trial, deviator + Vec3::Constant(trial.log_J / 3), G);
   }
   const Vec3 tau = 2 * m_mu * deviator + Vec3::Constant(m_kappa * trial.log_J);
-  u.P = trial.axes * tau.asDiagonal() * trial.axes.transpose() * G;
+  u.P = trial.axes * tau.asDiagonal() * trial.axes.transpose() * G;  // (PLA.5)
   u.stored = 0.5 * m_kappa * trial.log_J * trial.log_J + m_mu * deviator.squaredNorm();
   u.plastic = flow_energy(u.state.eps_p);
   u.sound = u.P.allFinite() && u.state.A.allFinite();
@@ -216,6 +219,7 @@ PlasticHistory::PlasticHistory(const scene::Problem& problem, Index n)
 }
 
 PlasticState PlasticHistory::committed(Index a) const {
+  assert(a >= 0 && a < m_n);
   const auto i = static_cast<std::size_t>(a);
   PlasticState state;
   for (int k = 0; k < 3; ++k) state.A(k, k) = m_old[k][i];
@@ -254,12 +258,14 @@ void PlasticHistory::note_trial() {
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[9][plastic_width],
                             double (&p)[9][plastic_width], double (&j)[plastic_width]) {
+  assert(first >= 0 && first + count <= m_n);
   note_trial();
   for (int l = 0; l < count; ++l) stress_of<3>(first, l, h, p, j);
 }
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[4][plastic_width],
                             double (&p)[4][plastic_width], double (&j)[plastic_width]) {
+  assert(first >= 0 && first + count <= m_n);
   note_trial();
   PlaneStates old, next;
   double(*const from[])[plastic_width] = {&old.A11, &old.A22, &old.A33, &old.A12, &old.eps_p};

@@ -137,8 +137,9 @@ CONCORD_INLINE void choose(const Row& flows, const Row& flowing, const Row& stil
   for (int l = 0; l < W; ++l) chosen[l] = flows[l] > 0 ? flowing[l] : still[l];
 }
 
-/// Radial return: beta = tau_y(new)/q in flowing lanes, from three steps of Newton's method
-/// from d = 0. Converged: q - 3 mu d and tau_y are equal to the round-off of their terms.
+/// Radial return (PLA.3): beta = tau_y(new)/q in flowing lanes, from three steps of Newton's
+/// method from d = 0. Converged: q - 3 mu d and tau_y are equal to the round-off of their
+/// terms.
 CONCORD_INLINE void return_map(const PlaneLaw& law, const PlaneStates& old, Trial& t,
                                PlaneStates& next, Row& beta) {
   const scene::Hardening& c = law.hardening;
@@ -168,7 +169,7 @@ CONCORD_INLINE void return_map(const PlaneLaw& law, const PlaneStates& old, Tria
   for (int l = 0; l < W; ++l) t.near[l] *= near[l];
 }
 
-/// C_p^-1 - I = F^-1 b_e F^-T - I of flowing lanes, b_e in the trial's axes with strains beta
+/// (PLA.4) of flowing lanes, b_e in the trial's axes with strains beta
 /// v, beta d; see plastic_metric() in plasticity.cpp.
 CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, Trial& t,
                                const Row& beta, PlaneStates& next) {
@@ -205,7 +206,7 @@ CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, 
   for (int l = 0; l < W; ++l) t.near[l] *= near[l];
 }
 
-/// P = tau F^-T, tau = kappa ln J I + 2 mu beta dev e.
+/// (PLA.5), tau = kappa ln J I + 2 mu beta dev e.
 CONCORD_INLINE void piola_stress(const PlaneLaw& law, const double (&h)[4][W], const Trial& t,
                                  const Row& beta, double (&p)[4][W]) {
 #pragma omp simd

@@ -21,8 +21,7 @@ struct PlaneLaw {
 /// Stress p and J - 1 of eight particles at H_ij = h[2 j + i] from `old`, and their new states.
 /// Returns a bit for every lane whose strains are beyond the series used here or whose return
 /// map needs more than three iterations: such a lane is left to J2Hencky::update, and its
-/// results are of no use. No lane looks at another. About 220 flops a particle, 150 more where
-/// one of the eight flows.
+/// results are of no use. No lane looks at another's values.
 unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][plastic_width],
                      const PlaneStates& old, PlaneStates& next, double (&p)[4][plastic_width],
                      double (&j)[plastic_width]);
