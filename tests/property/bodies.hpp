@@ -31,6 +31,7 @@ inline std::vector<Variant> variants() {
     if (dynamic_cast<const ParticleMethod*>(method))
       list.push_back({method->info().name, method->info().name, {}});
   }
+  list.push_back({"cbm_contact", "cbm", {{"xi_n", "0.1"}, {"xi_t", "0.1"}}});
   list.push_back({"delaunay_xi0", "delaunay", {{"xi_n", "0"}, {"xi_t", "0"}}});
   list.push_back(
       {"delaunay_xi_isotropic_half", "delaunay", {{"xi_n", "0.5"}, {"xi_t", "1.3"}}});
