@@ -48,10 +48,13 @@ std::vector<std::string> environment_with(int threads) {
   std::vector<std::string> out;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string text = *entry;
-    if (!text.starts_with("OMP_NUM_THREADS=") && !text.starts_with("CCX_NPROC"))
+    if (!text.starts_with("OMP_NUM_THREADS=") && !text.starts_with("CCX_NPROC") &&
+        !text.starts_with("OPENBLAS_NUM_THREADS="))
       out.push_back(text);
   }
   out.push_back(fmt::format("OMP_NUM_THREADS={}", std::max(1, threads)));
+  out.emplace_back(
+      "OPENBLAS_NUM_THREADS=1");  // its threads wait for each other in small blocks
   return out;
 }
 

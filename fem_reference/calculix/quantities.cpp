@@ -35,7 +35,7 @@ void check(const scene::Problem& problem, const Quantity& q) {
 
 NodalFields nodal_fields(const scene::Mesh& mesh, const Record& record) {
   NodalFields fields;
-  const std::vector<double> J = nodal_volume_ratio(mesh, record.u);
+  const std::vector<double> J = nodal_volume_ratio(mesh, record.u, record.t);
   for (std::size_t n = 0; n < record.stress.size(); ++n) {
     fields.von_mises.push_back(scene::von_mises(record.stress[n]));
     fields.pressure.push_back(scene::pressure(record.stress[n]));

@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <system_error>
 
@@ -99,12 +100,12 @@ class Calculix : public scene::Method {
            scene::Result& result) const override {
     const double started = now();
     const Options options = read_options(problem, request);
+    const scene::Mesh mesh = make_problem_mesh(problem, request);
+    const Quantities quantities(problem, mesh);
     const fs::path program = find_program();
     if (program.empty())
       throw SolveError("the start of CalculiX", 0, 0, -1,
                        "there is no program ccx on PATH; install the package calculix-ccx");
-    const scene::Mesh mesh = make_problem_mesh(problem, request);
-    const Quantities quantities(problem, mesh);
     const Motion motion = prescribed_motion(problem, mesh, options.steps);
     const HardeningTable hardening =
         problem.material.plastic()
@@ -121,29 +122,44 @@ class Calculix : public scene::Method {
                                                    quantities.reaction_sets(), hardening));
     result.setup_s = now() - started;
     const double solving = now();
-    const int status = run_program(program, place.folder(), request.threads, [&] {
-      scene::check_interrupt();
-      if (!request.progress) return;
-      const Progress reached = progress_of(place);
-      request.progress(reached.time, fmt::format("increment {}", reached.increments));
-    });
+    int status = 0;
+    std::exception_ptr stopped;
+    try {
+      status = run_program(program, place.folder(), request.threads, [&] {
+        scene::check_interrupt();
+        if (!request.progress) return;
+        const Progress reached = progress_of(place);
+        request.progress(reached.time, fmt::format("increment {}", reached.increments));
+      });
+    } catch (const Interrupted&) {
+      stopped = std::current_exception();
+    }
     result.wall_s = now() - solving;
-    result.notes["program"] = "CalculiX " + program_version(place / "job.log");
-
     const Progress reached = progress_of(place);
     result.steps = reached.iterations;
+    result.notes["program"] = "CalculiX " + program_version(place / "job.log");
     Report report(problem, request, mesh, quantities, result);
-    RecordRequest wanted{options.steps, quantities.reaction_sets().size(),
-                         problem.material.plastic(), reached.time};
+    const int done = collect(place,
+                             {options.steps, quantities.reaction_sets().size(),
+                              problem.material.plastic(), reached.time},
+                             mesh, report);
+    if (stopped) std::rethrow_exception(stopped);
+    scene::check_interrupt();  // the signal may have ended CalculiX first
+    if (status == 0 && done == options.steps) return;
+    throw SolveError("CalculiX", done, reached.time, -1,
+                     fmt::format("{} of {} load steps done, exit status {}; its last words:{}",
+                                 done, options.steps, status, log_tail(place / "job.log")));
+  }
+
+ private:
+  /// Reads what is there and reports it; the number of load steps.
+  static int collect(const Workplace& place, const RecordRequest& wanted,
+                     const scene::Mesh& mesh, Report& report) {
     report.add(zero_record(mesh, wanted));
     const std::vector<Record> records = read_records(place.folder(), mesh, wanted);
     for (const Record& record : records) report.add(record);
     report.finish();
-    if (status == 0 && static_cast<int>(records.size()) == options.steps) return;
-    throw SolveError("CalculiX", static_cast<long>(records.size()), reached.time, -1,
-                     fmt::format("{} of {} load steps done, exit status {}; its last words:{}",
-                                 records.size(), options.steps, status,
-                                 log_tail(place / "job.log")));
+    return static_cast<int>(records.size());
   }
 };
 

@@ -11,6 +11,7 @@ class Report {
   Report(const scene::Problem& problem, const scene::RunRequest& request,
          const scene::Mesh& mesh, const Quantities& quantities, scene::Result& result);
   /// A state, in the order of time: a row, a frame where one is due, the Result's quantities.
+  /// Throws SolveError for a folded state.
   void add(const Record& record);
   /// Frame of the last state if it has none, and samples at quadrature points of degree 7 -
   /// dim.

@@ -82,12 +82,13 @@ void read_dat(std::istream& file, const std::function<void(const DatTable&)>& ta
       open = true;
       continue;
     }
+    const bool cut = file.eof();  // the last line lacks its end: the row may be half a row
     if (!open) {
+      if (cut) break;
       if (trimmed(line).starts_with("S T E P")) continue;
       fail(".dat", number, line);
     }
     const std::size_t before = table.values.size();
-    const bool cut = file.eof();  // the last line lacks its end: the row may be half a row
     if (!append_row(line, table.values)) {
       table.values.resize(before);
       if (cut) break;

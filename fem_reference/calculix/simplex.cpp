@@ -175,7 +175,8 @@ Place locate(const scene::Mesh& mesh, const Vec3& X, const SourcePosition& where
   return best;
 }
 
-std::vector<double> nodal_volume_ratio(const scene::Mesh& mesh, const std::vector<Vec3>& u) {
+std::vector<double> nodal_volume_ratio(const scene::Mesh& mesh, const std::vector<Vec3>& u,
+                                       double t) {
   const QuadraticSimplex shape(mesh.dim);
   std::vector<double> sum(mesh.nodes.size(), 0);
   std::vector<int> cells(mesh.nodes.size(), 0);
@@ -183,7 +184,11 @@ std::vector<double> nodal_volume_ratio(const scene::Mesh& mesh, const std::vecto
     const Index* nodes = &mesh.cells[c * static_cast<std::size_t>(mesh.nodes_per_cell)];
     for (int a = 0; a < shape.node_count(); ++a) {
       const Vec3& xi = shape.unit_nodes()[static_cast<std::size_t>(a)];
-      sum[at(nodes[a])] += evaluate(mesh, shape, nodes, u, xi).F.determinant();
+      const double J = evaluate(mesh, shape, nodes, u, xi).F.determinant();
+      if (!(J > 0))
+        throw SolveError("det F", 0, t, static_cast<long>(c),
+                         fmt::format("{:g} in CalculiX's solution", J));
+      sum[at(nodes[a])] += J;
       ++cells[at(nodes[a])];
     }
   }

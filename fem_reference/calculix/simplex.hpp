@@ -59,7 +59,9 @@ struct Place {
 };
 Place locate(const scene::Mesh& mesh, const Vec3& X, const SourcePosition& where);
 
-/// det F at every node: mean over the cells around it.
-std::vector<double> nodal_volume_ratio(const scene::Mesh& mesh, const std::vector<Vec3>& u);
+/// det F at every node: mean over the cells around it. Throws SolveError for a cell where it is
+/// not positive, which CalculiX lets pass; `t` is the time to tell.
+std::vector<double> nodal_volume_ratio(const scene::Mesh& mesh, const std::vector<Vec3>& u,
+                                       double t);
 
 }  // namespace concord::calculix
