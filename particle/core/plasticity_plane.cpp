@@ -15,6 +15,11 @@ namespace {
 constexpr int W = plastic_width;
 using Row = double[W];
 
+/// 1 where |x| <= bound, else 0; 0 where x is not a number.
+CONCORD_INLINE double within(double x, double bound) {
+  return std::abs(x) <= bound ? 1.0 : 0.0;
+}
+
 /// asinh(s)/s from z = s^2 <= 1/64: sum (-z)^n (2n)!/(4^n n!^2 (2n + 1)), nine terms,
 /// truncation below 1e-18.
 CONCORD_INLINE double asinh_over_argument(double z) {
@@ -125,7 +130,7 @@ CONCORD_INLINE void trial_strains(const PlaneLaw& law, const double (&h)[4][W],
     t.q[l] = law.mu * std::sqrt(9 * v * v + 3 * d2);
     t.yield[l] = c.saturation_stress + c.modulus * old.eps_p[l] -
                  (c.saturation_stress - c.yield_stress) * decay;
-    t.near[l] = (std::abs(change) <= 0.25) & (std::abs(A33) <= 0.25) & (z <= 1.0 / 64) ? 1 : 0;
+    t.near[l] = within(change, 0.25) * within(A33, 0.25) * within(z, 1.0 / 64);
     j[l] = change;
   }
 }
@@ -157,8 +162,8 @@ CONCORD_INLINE void return_map(const PlaneLaw& law, const PlaneStates& old, Tria
     d += (q - slope * d - (base - rise * decay)) / (slope + rise * c.exponent * decay);
     decay = before * exp_near_zero(-c.exponent * d);
     const double tau = base + c.modulus * d - rise * decay;
-    const double rest = std::abs(q - 3 * law.mu * d - tau) - tolerance * q;
-    near[l] = (rest <= 0) & (c.exponent * d <= 0.2) & (d >= 0) ? 1 : 0;
+    const double rest = q - 3 * law.mu * d - tau;
+    near[l] = within(rest, tolerance * q) * within(c.exponent * d, 0.2);
     ratio[l] = tau / q;
     eps_p[l] = old.eps_p[l] + d;
   }
@@ -183,11 +188,11 @@ CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, 
     const double mean = D + (1 + D) * cosh_minus_one(d2);  // (b_11 + b_22)/2 - 1
     const double skew = (1 + D) * sinh_over_argument(d2) * beta[l] * t.ratio[l];
     const double m11 = t.metric11[l], m22 = t.metric22[l], m12 = t.metric12[l];
-    const bool far = (std::abs(m11) > 0.5) | (std::abs(m22) > 0.5) | (std::abs(m12) > 0.5);
+    const double one = 1 - within(m11, 0.5) * within(m22, 0.5) * within(m12, 0.5);  // 1: far
+    const bool far = one > 0;
     const double s11 = mean + skew * t.half[l] - (far ? -1.0 : m11);
     const double s22 = mean - skew * t.half[l] - (far ? -1.0 : m22);
     const double s12 = skew * t.shear[l] - (far ? 0.0 : m12);
-    const double one = far ? 1.0 : 0.0;
     const double i = t.inverse_J[l];
     const double a = (1 + h[3][l]) * i, b = -h[2][l] * i;  // F^-1 = (a, b; c, d)
     const double c = -h[1][l] * i, d = (1 + h[0][l]) * i;
@@ -195,7 +200,7 @@ CONCORD_INLINE void new_metric(const double (&h)[4][W], const PlaneStates& old, 
     a22[l] = c * c * s11 + 2 * c * d * s12 + d * d * s22 - one;
     a12[l] = a * c * s11 + (a * d + b * c) * s12 + b * d * s22;
     a33[l] = expm1_near_zero(twice_e33);
-    near[l] = (std::abs(log_D) <= 0.2) & (std::abs(twice_e33) <= 0.2) ? 1 : 0;
+    near[l] = within(log_D, 0.2) * within(twice_e33, 0.2);
   }
   choose(t.flows, a11, old.A11, next.A11);
   choose(t.flows, a22, old.A22, next.A22);
