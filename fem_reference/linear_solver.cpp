@@ -18,7 +18,7 @@ LinearSolver::LinearSolver(const dealii::SparsityPattern& pattern, std::vector<c
 }
 
 void LinearSolver::ready() {
-  m_factors.reset();
+  m_factors.forget_values();
   m_cleared.copy_from(m_K);
   m_diagonal = 0;
   for (unsigned r = 0; r < m_K.m(); ++r) m_diagonal += std::abs(m_K.diag_element(r)) / m_K.m();
@@ -60,16 +60,11 @@ void LinearSolver::solve(Vector b, const Vector& jump, Vector& x, long step, dou
   x.reinit(b.size());
   if (b.linfty_norm() == 0) return;
   if (!m_direct && solve_iteratively(b, x)) return;
-  try {
-    if (!m_factors) {
-      m_factors = std::make_unique<dealii::SparseDirectUMFPACK>();
-      m_factors->factorize(m_cleared);
-    }
-    m_factors->vmult(x, b);
-  } catch (const dealii::ExceptionBase& error) {
-    throw SolveError("singular tangent", step, t, -1, error.get_exc_name());
+  const bool solved =
+      (m_factors.ready() || m_factors.factorise(m_cleared)) && m_factors.solve(b, x);
+  if (!solved || !std::isfinite(x.l2_norm())) {
+    throw SolveError("singular tangent", step, t, -1);
   }
-  if (!std::isfinite(x.l2_norm())) throw SolveError("singular tangent", step, t, -1);
 }
 
 }  // namespace concord::fem

@@ -1,11 +1,8 @@
 #pragma once
 // Linear systems of Newton's method and of the consistent mass, with given unknowns.
 
-#include <deal.II/lac/sparse_direct.h>
-#include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
+#include "fem_reference/sparse_factors.hpp"
 
-#include <memory>
 #include <vector>
 
 namespace concord::fem {
@@ -18,9 +15,9 @@ class LinearSolver {
   using Matrix = dealii::SparseMatrix<double>;
   using Vector = dealii::Vector<double>;
 
-  /// `direct`: UMFPACK, factorised once a matrix; else conjugate gradients with SSOR to
-  /// `relative` |b|. A matrix on which conjugate gradients fail (not positive definite, as
-  /// beyond a limit point) goes to UMFPACK.
+  /// `direct`: UMFPACK, factorised once a matrix, ordered once; else conjugate gradients with
+  /// SSOR to `relative` |b|. A matrix on which conjugate gradients fail (not positive definite,
+  /// as beyond a limit point) goes to UMFPACK.
   LinearSolver(const dealii::SparsityPattern& pattern, std::vector<char> given, bool direct,
                double relative);
 
@@ -37,7 +34,7 @@ class LinearSolver {
   std::vector<char> m_given;
   bool m_direct;
   double m_relative, m_diagonal = 1;
-  std::unique_ptr<dealii::SparseDirectUMFPACK> m_factors;
+  SparseFactors m_factors;
 };
 
 }  // namespace concord::fem

@@ -40,7 +40,7 @@ kind = "symmetric"
 [[boundary]]
 group = "x1"
 kind = "displacement"
-value = ["{}"]
+value = ["{}", "free"]
 [[quantity]]
 name = "pull"
 kind = "reaction"
@@ -229,7 +229,11 @@ TEST(PlasticBody, UnloadingIsElasticAndReloadingRetraces) {
   const double across = 1 / 1.05;  // isochoric to .1 %
   EXPECT_NEAR(slope, 1e6 / 0.91 * across / 1.05, 0.01 * slope);
   EXPECT_GT(h.at("eps_p")[40], h.at("eps_p")[30] + 0.02);
-  EXPECT_LE(result.invariants.at("energy_drift"), 2e-3);  // trapezoidal rule over the kinks
+  // Trapezoidal rule, steps of d = .0025 m: a kink of the slope from E/(1 - nu^2) to nearly
+  // nothing inside a step costs at most a d^2/8; the other kinks fall between steps.
+  const double total = h.at("internal_energy_J")[40] + flow[40];
+  EXPECT_LE(result.invariants.at("energy_drift") * total, 1e6 / 0.91 * 0.0025 * 0.0025 / 8);
+  EXPECT_GT(total, 100);
 }
 
 TEST(PlasticBody, PerfectPlasticityFlowsAtTheYieldStress) {
