@@ -42,9 +42,10 @@ TEST(TensileBar, StepsHardlyMatter) {
   const std::vector<scene::Override> few{{"load_steps", "5"}}, some{{"load_steps", "20"}},
       many{{"load_steps", "40"}};
   const Bar five = pull(20, few), twenty = pull(20, some), forty = pull(20, many);
-  // Proportional but for the neck's onset: the return map follows the path to second order.
-  EXPECT_NEAR(five.force, forty.force, 1e-5 * forty.force);
-  EXPECT_NEAR(twenty.force, forty.force, 1e-6 * forty.force);
+  // The return map follows the turning of the flow to first order in the step: what is left
+  // must stay within the 1e-4 asked of the reaction.
+  EXPECT_NEAR(five.force, forty.force, 1e-4 * forty.force);
+  EXPECT_LT(std::abs(twenty.force - forty.force), std::abs(five.force - forty.force));
   // The trapezoidal rule of the external work is all that is left of the balance.
   EXPECT_NEAR(std::log2(twenty.drift / forty.drift), 2, 0.4);
   EXPECT_LE(forty.drift, 1e-3);
@@ -55,7 +56,8 @@ TEST(TensileBar, CauchyMeasureShiftsTheForce) {
   const std::vector<scene::Override> steps{{"load_steps", "20"}};
   const Bar kirchhoff = pull(20, steps);
   const Bar cauchy = pull(20, steps, {{"yield_measure", "cauchy"}});
-  EXPECT_NEAR(std::abs(cauchy.force / kirchhoff.force - 1), 2.4e-3, 2e-4);
+  // J > 1 in the neck: more Kirchhoff stress before it flows.
+  EXPECT_NEAR(cauchy.force / kirchhoff.force - 1, 2.4e-3, 2e-4);
 }
 
 TEST(TensileBar, AnotherBarConverges) {

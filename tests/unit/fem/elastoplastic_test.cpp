@@ -111,7 +111,9 @@ bool tangent_is_derivative(const Elastoplastic<dim>& law, const dealii::Tensor<2
           worst = std::max(worst, std::abs(dP[i][j] - A[i][j][k][l]) / A.norm());
     }
   }
-  if (one_side) EXPECT_LE(worst, 1e-8);
+  if (one_side) {
+    EXPECT_LE(worst, 1e-8);
+  }
   if (law.symmetric()) {
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
