@@ -1,61 +1,16 @@
 // Plastic flow in the body: homogeneous fields against a scalar integration, unloading, large
-// steps, perfect plasticity, Newton's order, what is written.
+// steps, perfect plasticity, Newton's order.
 
-#include "fem_scene.hpp"
+#include "plastic_scene.hpp"
 
 #include "fem_reference/element_table.hpp"
 #include "fem_reference/linear_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace concord::fem_test {
 namespace {
-
-const std::string hardening = R"(yield_stress = "2 kPa"
-saturation_stress = "3 kPa"
-hardening_modulus = "1 kPa"
-saturation_exponent = 20
-)";
-const std::string perfect = "yield_stress = \"2 kPa\"\n";
-
-/// E = 1 MPa, nu = .3 as everywhere in these tests; hardening follows the material's entries.
-scene::Problem plastic_problem(const Folder& folder, const std::string& dimension,
-                               const std::string& time, const std::string& law,
-                               const std::string& rest) {
-  return make_problem(folder, geo_of(dimension),
-                      scene_text(dimension, "static = true\n" + time, law + rest, "j2-hencky"));
-}
-
-/// Tension of a square block along x, the sides y free, u_x(x = 1) = `motion`.
-std::string tension(const std::string& motion) {
-  return fmt::format(R"toml(
-[[boundary]]
-group = "x0"
-kind = "symmetric"
-[[boundary]]
-group = "y0"
-kind = "symmetric"
-[[boundary]]
-group = "x1"
-kind = "displacement"
-value = ["{}", "free"]
-[[quantity]]
-name = "pull"
-kind = "reaction"
-group = "x1"
-[[quantity]]
-name = "eps_p"
-kind = "maximum"
-field = "plastic_strain"
-[[quantity]]
-name = "tau_eq"
-kind = "maximum"
-field = "kirchhoff_mises"
-)toml",
-                     motion);
-}
 
 /// Plane-strain tension of one point, tau_yy = 0, in logarithmic stretches, which add up when
 /// the axes stay: elastic strains e (sum over the steps less flow), radial return by bisection,
@@ -119,25 +74,6 @@ struct Tension {
     return std::sqrt(1.5 * square);
   }
 };
-
-/// history.csv as columns by name.
-std::map<std::string, std::vector<double>> history(const fs::path& out) {
-  std::ifstream file(out / "history.csv");
-  std::string line, cell;
-  std::vector<std::string> names;
-  std::map<std::string, std::vector<double>> columns;
-  while (std::getline(file, line)) {
-    if (line.empty() || line[0] == '#') continue;
-    std::stringstream cells(line);
-    for (std::size_t k = 0; std::getline(cells, cell, ','); ++k) {
-      if (names.size() == k)
-        names.push_back(cell);
-      else
-        columns[names[k]].push_back(std::stod(cell));
-    }
-  }
-  return columns;
-}
 
 class PlasticTension : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
@@ -347,75 +283,6 @@ TEST(PlasticBody, NewtonConvergesQuadratically) {
     EXPECT_GE(checked, 1) << measure;
     EXPECT_LE(r.back(), 1e-13);
   }
-}
-
-TEST(PlasticBody, ThreePointRuleIsTheDefaultOfP2InThePlane) {
-  const Folder folder;
-  const auto problem =
-      plastic_problem(folder, "plane strain", "load_steps = 1", hardening, tension("0.05*t"));
-  const auto elastic =
-      make_problem(folder, square_geo(), scene_text("plane strain", "static = true", R"toml(
-[[boundary]]
-group = "sides"
-kind = "fixed"
-)toml"));
-  EXPECT_EQ(run(problem, 0.5, {{"element", "P2"}}).notes.at("quadrature"), "3 points");
-  EXPECT_EQ(run(problem, 0.5, {{"element", "Q2"}}).notes.count("quadrature"), 0u);
-  EXPECT_EQ(run(elastic, 0.5, {{"element", "P2"}}).notes.count("quadrature"), 0u);
-  EXPECT_EQ(run(elastic, 0.5, {{"element", "P2"}, {"quadrature", "3"}}).notes.at("quadrature"),
-            "3 points");
-  EXPECT_THROW(run(elastic, 0.5, {{"element", "Q2"}, {"quadrature", "3"}}), InputError);
-}
-
-TEST(PlasticBody, DynamicsAreRefused) {
-  const Folder folder;
-  const std::string rest = hardening + R"toml(
-[[boundary]]
-group = "x0"
-kind = "fixed"
-)toml";
-  const auto dynamic =
-      make_problem(folder, square_geo(),
-                   scene_text("plane strain", "end_time = \"0.1 s\"", rest, "j2-hencky"));
-  for (const char* solver : {"auto", "explicit", "newmark", "static"}) {
-    try {
-      run(dynamic, 0.5, {{"element", "Q2"}, {"solver", solver}});
-      ADD_FAILURE() << solver;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("quasi-statically"), std::string::npos)
-          << error.what();
-    }
-  }
-  const auto still = make_problem(
-      folder, square_geo(), scene_text("plane strain", "static = true", rest, "j2-hencky"));
-  EXPECT_THROW(run(still, 0.5, {{"solver", "newmark"}}), InputError);
-  EXPECT_THROW(run(still, 0.5, {{"law", "split-neo-hookean"}}), InputError);
-}
-
-TEST(PlasticBody, KirchhoffMisesOfElasticScenesIsJTimesCauchy) {
-  const Folder folder;
-  const auto problem =
-      make_problem(folder, square_geo(), scene_text("plane strain", "static = true", R"toml(
-[exact]
-displacement = ["0.2*X", "0.1*Y", "0"]
-[[boundary]]
-group = "sides"
-kind = "displacement"
-value = "exact"
-[[quantity]]
-name = "tau_eq"
-kind = "maximum"
-field = "kirchhoff_mises"
-[[quantity]]
-name = "sigma_eq"
-kind = "maximum"
-field = "von_mises"
-)toml"));
-  const auto result = run(problem, 0.5, {{"element", "P2"}});
-  EXPECT_NEAR(result.quantities.at("tau_eq"), 1.2 * 1.1 * result.quantities.at("sigma_eq"),
-              1e-10 * 1e6);
-  EXPECT_GT(result.quantities.at("sigma_eq"), 1e4);
-  EXPECT_EQ(result.quantities.count("gauss_plastic_strain_max"), 0u);
 }
 
 }  // namespace
