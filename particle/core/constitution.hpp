@@ -33,6 +33,11 @@ class Constitution {
   /// Equivalent plastic strain of particle a at H; 0 in elastic materials.
   double plastic_strain(Index a, const Mat3& H) const;
 
+  /// While held, plastic materials answer elastically (PlasticHistory::hold).
+  void hold(bool on) {
+    if (m_history) m_history->hold(on);
+  }
+
   /// The state of the last force evaluation becomes the one that later ones start from.
   void commit() {
     if (m_history) m_history->commit();

@@ -47,6 +47,9 @@ class ForceModel {
   /// begin from the last state taken: to be called once for every accepted step.
   void commit() { m_constitution.commit(); }
 
+  /// While held, plastic flow is off: forces respond elastically from the last state taken.
+  void hold_flow(bool on) { m_constitution.hold(on); }
+
   /// f = internal and stabilisation force [N], overwritten; columns of `stride` doubles a
   /// particle. `v` is read only by models with viscosity. No allocation. Throws BadState for
   /// det F <= 0 or NaN (lowest particle number).

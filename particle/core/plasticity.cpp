@@ -212,7 +212,8 @@ scene::Tangent J2Hencky::tangent(const Mat3& H, const PlasticState& old) const {
 }
 
 PlasticHistory::PlasticHistory(const scene::Problem& problem, Index n)
-    : m_law(problem.material), m_n(n), m_components(problem.dim() == 3 ? 6 : 4) {
+    : m_material(problem.material), m_law(problem.material), m_n(n),
+      m_components(problem.dim() == 3 ? 6 : 4) {
   const std::size_t padded = static_cast<std::size_t>(n) + plastic_width;
   m_old.assign(static_cast<std::size_t>(m_components) + 1, Column(padded, 0.0));
   m_new = m_old;
@@ -278,6 +279,13 @@ void PlasticHistory::stress(Index first, int count, const double (&h)[4][plastic
   for (int k = 0; k < 5; ++k) std::copy_n(*to[k], count, m_new[k].data() + first);
   for (beyond &= (1u << count) - 1; beyond != 0; beyond &= beyond - 1)
     stress_of<2>(first, std::countr_zero(beyond), h, p, j);
+}
+
+void PlasticHistory::hold(bool on) {
+  scene::Material material = m_material;
+  constexpr double never = 1e300;  // [Pa] no stress reaches it
+  if (on) material.hardening = {never, never, 0, 0};
+  m_law = J2Hencky(material);
 }
 
 void PlasticHistory::commit() {

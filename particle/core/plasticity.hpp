@@ -81,6 +81,10 @@ class PlasticHistory {
   /// The trial state of the last force evaluation becomes the committed one. No copy.
   void commit();
 
+  /// While held, no particle flows: forces answer elastically from the committed state, as they
+  /// do to a reversal. For the stable time step.
+  void hold(bool on);
+
  private:
   /// The same for one lane, by J2Hencky::update.
   template <int Dim>
@@ -88,6 +92,7 @@ class PlasticHistory {
                  double (&p)[Dim * Dim][plastic_width], double (&j)[plastic_width]);
   void note_trial();
 
+  scene::Material m_material;
   J2Hencky m_law;
   Index m_n;
   int m_components;  ///< 4 in plane strain (11, 22, 33, 12), 6 in 3D (23, 31 too), then eps_p

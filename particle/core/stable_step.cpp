@@ -15,6 +15,18 @@ double dot(const Column& a, const Column& b, const Executor& executor) {
   });
 }
 
+/// The stable step is that of the elastic response: what flows now may unload in the next step.
+class ElasticResponse {
+ public:
+  explicit ElasticResponse(ForceModel& model) : m_model(model) { m_model.hold_flow(true); }
+  ~ElasticResponse() { m_model.hold_flow(false); }
+  ElasticResponse(const ElasticResponse&) = delete;
+  ElasticResponse& operator=(const ElasticResponse&) = delete;
+
+ private:
+  ForceModel& m_model;
+};
+
 void scale(Column& a, double factor) {
   for (double& x : a) x *= factor;
 }
@@ -67,6 +79,7 @@ void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& r
 }
 
 double SpectralRadius::omega_max(std::span<const double> u, double tolerance, int most) {
+  const ElasticResponse elastic(m_model);
   const std::size_t size = u.size();
   m_shifted.assign(size, 0.0);
   m_force.assign(size, 0.0);
