@@ -16,7 +16,8 @@ struct SparseFactors::Handles {
   Handles() {
     umfpack_dl_defaults(control.data());
     control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-    // On the tensile bar's P2 meshes nested dissection takes a quarter off the time of AMD.
+    // Tensile bar, P2, 9118 unknowns, 31 iterations, one run of each on a busy machine: 5.7 s
+    // with nested dissection, 7.7 s with AMD.
     control[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
     control[UMFPACK_IRSTEP] = 1;
   }
