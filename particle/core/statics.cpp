@@ -57,6 +57,9 @@ struct Statics::Factors {
   Eigen::Index entries = -1;
   bool cholesky_analysed = false, lu_analysed = false;
 
+  /// An indefinite tangent is no news: the LU factorisation takes it.
+  Factors() { cholesky.cholmod().print = 0; }
+
   void take(const ForceModel::Stiffness& K, const std::vector<Index>& equation, Index free) {
     if (K.nonZeros() != entries) build_pattern(K, equation, free);
     for (std::size_t k = 0; k < source.size(); ++k)
