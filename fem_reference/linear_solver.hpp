@@ -23,6 +23,7 @@ class LinearSolver {
 
   /// The matrix to fill, given unknowns included; then call ready().
   Matrix& matrix() { return m_K; }
+  const Matrix& matrix() const { return m_K; }
   void ready();
   /// Throws SolveError for a singular matrix, with step and time.
   void solve(Vector b, const Vector& jump, Vector& x, long step, double t);

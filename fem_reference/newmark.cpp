@@ -75,6 +75,7 @@ template <int dim> void run_newmark(Run<dim>& run) {
   const double tolerance =
       run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
   Newton<dim> newton(table, run.prescribed, run.options, tolerance,
+                     run.discretisation.smallest_cell(),
                      run.options.linear_solver == LinearChoice::direct, linear_tolerance);
   const double beta = run.options.beta, gamma = run.options.gamma;
   const double dt = time_step(run), end = run.problem.end_time;

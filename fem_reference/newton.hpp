@@ -22,9 +22,10 @@ struct Inertia {
 /// an iteration.
 template <int dim> class Newton {
  public:
-  /// `direct`: which linear solver; `relative`: tolerance of the iterative one.
+  /// `length`: size of a cell [m]; `direct`: which linear solver; `relative`: tolerance of the
+  /// iterative one.
   Newton(const TangentForce& table, const Prescribed<dim>& prescribed, const Options& options,
-         double tolerance, bool direct, double relative);
+         double tolerance, double length, bool direct, double relative);
 
   /// state.u in: last solution, out: new one; state.internal is renewed; state.external must be
   /// that of the new step. Returns the number of linear solves. Throws SolveError (step and
@@ -36,6 +37,7 @@ template <int dim> class Newton {
   using Vector = State::Vector;
   double residual(const State& state, const Inertia* inertia, Vector& r) const;
   double scale(const State& state, const Inertia* inertia) const;
+  double roundoff() const;
   double backtrack(State& state, const Vector& du, const Inertia* inertia, double norm,
                    Vector& r) const;
   void check(const State& state, long bad_element) const;
@@ -44,7 +46,7 @@ template <int dim> class Newton {
   const TangentForce& m_table;
   const Prescribed<dim>& m_prescribed;
   const Options& m_options;
-  double m_tolerance;
+  double m_tolerance, m_length;
   std::vector<char> m_given;
   LinearSolver m_linear;
   bool m_has_tangent = false;

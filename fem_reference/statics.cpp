@@ -96,7 +96,8 @@ template <int dim, class Law> void run_with(Run<dim>& run, Law& law) {
   const bool direct = use_direct(run) || !table.symmetric();
   const double tolerance =
       run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
-  Newton<dim> newton(table, run.prescribed, run.options, tolerance, direct, 1e-10);
+  Newton<dim> newton(table, run.prescribed, run.options, tolerance,
+                     run.discretisation.smallest_cell(), direct, 1e-10);
   if (const long bad = table.force(state.u, state.internal); bad >= 0) {
     throw SolveError("det F", 0, 0, bad, "in the initial state");
   }
