@@ -210,6 +210,16 @@ group = "x1"
   EXPECT_NEAR(force[0], force[1], 0.02 * force[1]);
 }
 
+TEST(PlasticBody, TinySteps) {
+  // Strains of 1e-12, of which F = I + Grad u keeps four digits.
+  const Folder folder;
+  const auto problem =
+      plastic_problem(folder, "plane strain", "load_steps = 3", hardening, tension("1e-12*t"));
+  const auto result = run(problem, 0.25, {{"element", "P2"}}, 0.2);
+  EXPECT_NEAR(result.quantities.at("pull_x"), 1e6 / 0.91 * 1e-12, 1e-3 * 1e-6);
+  EXPECT_EQ(result.quantities.at("eps_p"), 0);
+}
+
 TEST(PlasticBody, StepThatFailsLeavesNoTrace) {
   // With 3 iterations a step is halved again and again; the answer is that of many small steps.
   const std::string rest = tension("0.05*t");
