@@ -10,7 +10,7 @@ GREY = "#9e9e9e"
 EDGES = (0.05, 0.06, 0.08, 0.28)
 RIM = (0.45, 0.47, 0.5, 0.9)
 DOT_FROM = 15.0  # pixels of a spacing from which on particles show as dots
-EDGES_FROM = 9.0  # pixels of an element from which on its edges are drawn
+EDGES_FROM = 24.0  # pixels of an element from which on its edges are drawn: below, they hide the field
 MANY = 6000  # elements; more are cut into fewer triangles
 DPI = 100
 
