@@ -11,7 +11,9 @@ using Overrides = std::vector<scene::Override>;
 
 scene::Result pull(const Variant& variant, const Overrides& set,
                    const std::map<std::string, std::string>& more = {}) {
-  const scene::Problem problem = scene::read_problem("tensile_bar", set);
+  Overrides all{{"load_steps", "25"}};
+  all.insert(all.end(), set.begin(), set.end());
+  const scene::Problem problem = scene::read_problem("tensile_bar", all);
   scene::RunRequest request;
   request.h = problem.reference_length / 14;
   request.settings = variant.settings;
