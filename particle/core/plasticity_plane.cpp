@@ -52,22 +52,6 @@ CONCORD_INLINE double cosh_minus_one(double y) {
   return 0.5 * y * sum;
 }
 
-/// e^x - 1 for |x| <= 1/5: the series of exp_near_zero without its first term.
-CONCORD_INLINE double expm1_near_zero(double x) {
-  double sum = 1.0 / 39916800;
-  sum = sum * x + 1.0 / 3628800;
-  sum = sum * x + 1.0 / 362880;
-  sum = sum * x + 1.0 / 40320;
-  sum = sum * x + 1.0 / 5040;
-  sum = sum * x + 1.0 / 720;
-  sum = sum * x + 1.0 / 120;
-  sum = sum * x + 1.0 / 24;
-  sum = sum * x + 1.0 / 6;
-  sum = sum * x + 1.0 / 2;
-  sum = sum * x + 1.0;
-  return sum * x;
-}
-
 /// e^x for x <= 0 (below -700: e^-700): x = k ln 2 + r, e^x = 2^k (e^(r/2))^2. k is read from
 /// the last bits of x/ln 2 + 1.5 2^52.
 CONCORD_INLINE double exp_of_negative(double x) {

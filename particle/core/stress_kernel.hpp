@@ -62,9 +62,9 @@ CONCORD_INLINE double log1p_near_one(double j) {
   return 2.0 * s * sum;
 }
 
-/// e^x for |x| <= 1/5 by eleven terms of its series beyond 1: truncation below 1e-17, relative
-/// error about 2e-16.
-CONCORD_INLINE double exp_near_zero(double x) {
+/// e^x - 1 for |x| <= 1/5 by eleven terms of its series: truncation below 1e-17, relative error
+/// about 2e-16.
+CONCORD_INLINE double expm1_near_zero(double x) {
   double sum = 1.0 / 39916800;
   sum = sum * x + 1.0 / 3628800;
   sum = sum * x + 1.0 / 362880;
@@ -76,8 +76,11 @@ CONCORD_INLINE double exp_near_zero(double x) {
   sum = sum * x + 1.0 / 6;
   sum = sum * x + 1.0 / 2;
   sum = sum * x + 1.0;
-  return sum * x + 1.0;
+  return sum * x;
 }
+
+/// e^x likewise.
+CONCORD_INLINE double exp_near_zero(double x) { return expm1_near_zero(x) + 1.0; }
 
 /// ln J of a plane-stress neo-Hookean state from the in-plane ln J_2: solves P_33 = 0, i.e.
 /// mu (exp(2s) - 1) + lambda (ln J_2 + s) = 0 for s = ln F_33 (monotone; Newton from the

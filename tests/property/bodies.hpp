@@ -117,6 +117,42 @@ inline double norm(const Column& c) {
   return std::sqrt(s);
 }
 
+/// u + s d.
+inline Column moved(const Column& u, const Column& d, double s) {
+  Column v = u;
+  for (std::size_t k = 0; k < v.size(); ++k) v[k] += s * d[k];
+  return v;
+}
+
+/// Components in [-1, 1].
+inline Column random_direction(const Bench& b, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return b.column(
+      [&](Index) { return Vec3(uniform(generator), uniform(generator), uniform(generator)); });
+}
+
+/// |K d + df/ds| / |K d|, the slope of the forces along d by a central difference of step s.
+inline double tangent_error(Bench& b, const ForceModel::Stiffness& K, const Column& u,
+                            const Column& d, double s) {
+  const Column plus = b.force(moved(u, d, s)), minus = b.force(moved(u, d, -s));
+  Eigen::VectorXd direction(K.cols()), difference(K.rows());
+  for (Index a = 0; a < b.body.n; ++a) {
+    for (int i = 0; i < b.body.dim; ++i) {
+      const std::size_t k = static_cast<std::size_t>(a) * b.body.stride + i;
+      direction[a * b.body.dim + i] = d[k];
+      difference[a * b.body.dim + i] = -(plus[k] - minus[k]) / (2 * s);
+    }
+  }
+  const Eigen::VectorXd product = K * direction;
+  return (product - difference).norm() / product.norm();
+}
+
+/// Departure from symmetry, relative.
+inline double asymmetry(const ForceModel::Stiffness& K) {
+  return ForceModel::Stiffness(K - ForceModel::Stiffness(K.transpose())).norm() / K.norm();
+}
+
 /// Instantiated once, in forces_test.cpp, for the tests of all files.
 class EveryMethod : public testing::TestWithParam<Variant> {};
 
