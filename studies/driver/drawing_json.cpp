@@ -103,6 +103,15 @@ json plot_json(const Study& study, const Plot& plot) {
   return object;
 }
 
+bool has_run(const Study& study, const Panel& panel) {
+  return std::any_of(study.cases.begin(), study.cases.end(), [&](const Case& entry) {
+    if (!entry.matches(panel.selector)) return false;
+    const auto& levels = entry.resolutions;
+    return !panel.resolution ||
+           std::find(levels.begin(), levels.end(), *panel.resolution) != levels.end();
+  });
+}
+
 json picture_json(const Study& study, const Picture& picture) {
   json object{{"scale_displacement", picture.scale_displacement}, {"caption", ""}};
   put_panel(object, study, picture.body);
@@ -112,6 +121,7 @@ json picture_json(const Study& study, const Picture& picture) {
   put(object, "time", picture.time);
   put(object, "columns", picture.columns);
   for (const Panel& panel : picture.panels) {
+    if (!study.full && !has_run(study, panel)) continue;  // of the full report only
     json one = json::object();
     put_panel(one, study, panel);
     object["panels"].push_back(one);

@@ -16,6 +16,10 @@ void put(nlohmann::json& object, const Selector& selector);
 /// What reports draw. A selector with "*" becomes the list of scenes, methods and variants that
 /// it stands for among the study's cases, so that readers need no patterns.
 nlohmann::json plot_json(const Study& study, const Plot& plot);
+/// Panels of cases that run in the full report only are left out of the quick one.
 nlohmann::json picture_json(const Study& study, const Picture& picture);
+
+/// Whether a case of the study, as it is run, has what the panel shows.
+bool has_run(const Study& study, const Panel& panel);
 
 }  // namespace concord::studies

@@ -150,8 +150,14 @@ json study_json(const StudyResult& result) {
   for (const ReferenceResult& reference : result.references)
     object["references"].push_back(reference_json(result, reference));
   for (const Plot& plot : study.plots) object["plots"].push_back(plot_json(study, plot));
-  for (const Picture& picture : study.pictures)
-    object["pictures"].push_back(picture_json(study, picture));
+  for (const Picture& picture : study.pictures) {
+    const auto& panels = picture.panels;
+    const bool any =
+        panels.empty() ? has_run(study, picture.body)
+                       : std::any_of(panels.begin(), panels.end(),
+                                     [&](const Panel& panel) { return has_run(study, panel); });
+    if (study.full || any) object["pictures"].push_back(picture_json(study, picture));
+  }
   return object;
 }
 

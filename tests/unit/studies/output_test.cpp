@@ -120,6 +120,26 @@ TEST(StudyJson, PicturesCarryTheirPanelsRangeAndCrop) {
   EXPECT_FALSE(json["panels"][0].contains("color")) << "the picture's";
 }
 
+TEST(StudyJson, QuickReportsLeaveOutPanelsThatHaveNoRun) {
+  Study study = sample_study();
+  Panel run, none;
+  run.selector.method = study.cases[0].method;
+  none.selector.method = "of the full report";
+  Picture picture;
+  picture.panels = {none, run};
+  Picture nothing;
+  nothing.panels = {none};
+  study.pictures = {picture, nothing};
+  study.full = false;
+  const auto quick = study_json(judged(study))["pictures"];
+  ASSERT_EQ(quick.size(), 1u);
+  EXPECT_EQ(quick[0]["panels"].size(), 1u);
+  study.full = true;
+  const auto full = study_json(judged(study))["pictures"];
+  ASSERT_EQ(full.size(), 2u);
+  EXPECT_EQ(full[0]["panels"].size(), 2u) << "the report tells what is missing";
+}
+
 TEST(Tables, CellsAreEscaped) {
   const Table table{"t", {"a", "b"}, {{"x, y", "p|q"}, {"say \"so\"", ""}}};
   EXPECT_EQ(table.csv(), "a,b\n\"x, y\",p|q\n\"say \"\"so\"\"\",\n");
