@@ -171,11 +171,13 @@ class Leapfrog::Schedule {
 };
 
 void Leapfrog::step(double dt) {
+  m_in_step = true;
   kick(0.5 * (m_dt_last + dt), m_damping);
   drift(dt);
   m_dt_last = dt;
   evaluate();
   m_model.commit();
+  m_in_step = false;
   if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
 }
 
@@ -249,10 +251,8 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     advance(options, recorder, outcome);
   } catch (const BadState& bad) {
     const SolveError error = failure(bad, m_dt_last > 0 ? outcome.steps + 1 : 0);
-    if (m_dt_last > 0) {
-      step_back();
-      write(recorder, true, true);
-    }
+    if (m_in_step) step_back();
+    if (m_dt_last > 0 || m_in_step) write(recorder, true, true);
     throw error;
   } catch (const Interrupted&) {
     write(recorder, true, true);

@@ -137,7 +137,9 @@ const std::vector<scene::ParameterInfo>& solver_parameters() {
        1e-6, 1},
       {"dt", "s", "0", ">= 0", "fixed time step; 0: from dt_factor", 0},
       {"damping", "1/s", "0", ">= 0",
-       "mass-proportional damping rate c: force -c m v (0 on a static scene: critical)", 0},
+       "mass-proportional damping rate c: force -c m v (0 on a static scene without duration: "
+       "critical)",
+       0},
       {"duration", "s", "0", ">= 0",
        "explicit on a static scene: t runs from 0 to 1 in this time, with the density's "
        "inertia and "
@@ -187,6 +189,12 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
     throw InputError({problem.file.string(), 0, 0}, m_info.name + ".duration",
                      settings.word("solver") + " solver, or a scene with an end_time",
                      "solver = explicit on a static scene");
+  }
+  if (problem.is_static && solver == "explicit" && problem.material.plastic() &&
+      !(settings.number("duration") > 0)) {
+    throw InputError({problem.file.string(), 0, 0}, m_info.name + ".duration", "0",
+                     "above 0 for a plastic material: damped vibrations would leave plastic "
+                     "strains that the load did not make");
   }
   if (problem.is_static && solver != "explicit") {
     if (model->viscous()) {

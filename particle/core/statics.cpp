@@ -141,7 +141,8 @@ bool Statics::try_displacement(const Column& trial, double t, double& residual) 
   try {
     residual = evaluate(t);
   } catch (const BadState& bad) {
-    m_failure = fmt::format("{} <= 0 at particle {}", bad.quantity, bad.particle);
+    m_failure =
+        fmt::format("{} <= 0 or not a number at particle {}", bad.quantity, bad.particle);
     return false;
   }
   return std::isfinite(residual);
@@ -196,8 +197,10 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
   m_constraints.impose(t, trial);
   for (std::size_t k = 0; k < trial.size(); ++k) correction[k] = trial[k] - m_u[k];
   double residual = 0, before = 0;
+  const double scale = m_scale;
   const auto give_up = [&] {
     m_u = start;
+    m_scale = scale;
     return false;
   };
   // Predictor: loads of the new step on the old state.
@@ -256,20 +259,24 @@ void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutc
   (void)evaluate(0);
   m_model.commit();
   m_work.start(0, m_u, m_f);
+  recorder.row(state());
   double step = 1.0 / options.load_steps;
   const double smallest = step / std::ldexp(1.0, options.most_halvings);
   int next_frame = 1;
   while (m_t < 1 - 1e-12) {
     const double t = std::min(1.0, m_t + step);
+    const Column start = m_u;
     bool reached = false;
     try {
       reached = step_to(t > 1 - 1e-12 ? 1.0 : t, options, outcome);
     } catch (const BadState& bad) {
       m_failure = bad.quantity;
+      m_u = start;
     }
     if (!reached) {
       step *= 0.5;
       if (step >= smallest) continue;
+      (void)evaluate(m_t);  // forces of the last equilibrium, for the result
       pause();
       throw SolveError(
           "equilibrium", outcome.iterations, m_t, -1,
