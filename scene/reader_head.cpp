@@ -81,8 +81,13 @@ void read_hardening(const Section& section, Problem& problem) {
   Hardening& hardening = problem.material.hardening;
   hardening.yield_stress = section.positive("yield_stress", unit::pressure);
   hardening.saturation_stress = hardening.yield_stress;
-  if (section.has("saturation_stress"))
+  if (section.has("saturation_stress")) {
     hardening.saturation_stress = section.positive("saturation_stress", unit::pressure);
+    if (!section.has("saturation_exponent") &&
+        hardening.saturation_stress != hardening.yield_stress)
+      throw bad_value(section.require("saturation_stress"),
+                      "saturation_stress together with saturation_exponent");
+  }
   if (section.has("hardening_modulus"))
     hardening.modulus = section.quantity("hardening_modulus", unit::pressure);
   if (section.has("saturation_exponent"))
@@ -185,7 +190,12 @@ void read_material(const Section& scene, Problem& problem) {
   problem.material.model = models.at(model);
   problem.material.rho0 = section.positive("density", unit::density);
   read_constants(section, problem.material);
-  if (problem.material.plastic()) read_hardening(section, problem);
+  if (problem.material.plastic()) return read_hardening(section, problem);
+  for (const char* key :
+       {"yield_stress", "saturation_stress", "hardening_modulus", "saturation_exponent"}) {
+    if (const ConfigNode* node = section.find(key))
+      throw bad_value(*node, "this key beside model = \"j2-hencky\" only");
+  }
 }
 
 Symbols read_parameters(const Section& scene, Problem& problem) {

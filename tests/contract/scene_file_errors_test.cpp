@@ -114,6 +114,22 @@ TEST(SceneFile, ElasticConstantsComeInPairs) {
       {"[material]", "material", "no pair", "youngs_modulus with poissons_ratio"});
 }
 
+TEST(SceneFile, HardeningOfPlasticMaterials) {
+  const std::string ratio = "poissons_ratio = 0.3\n";
+  const auto plastic = [&](const std::string& hardening) {
+    std::string text = with("model = \"neo-hookean\"", "model = \"j2-hencky\"");
+    return text.replace(text.find(ratio), ratio.size(), ratio + hardening);
+  };
+  const auto missing = plastic("");
+  expect_scene_error(missing, {"[material]", "material.yield_stress", "nothing", "> 0"});
+  expect_scene_error(with(ratio, ratio + "yield_stress = \"7 kPa\"\n"),
+                     {"\"7 kPa\"", "material.yield_stress", "7 kPa", "j2-hencky"});
+  expect_scene_error(plastic("yield_stress = \"1 MPa\"\nsaturation_stress = \"2 MPa\"\n"),
+                     {"\"2 MPa\"", "material.saturation_stress", "2 MPa", "saturation_exponent"});
+  expect_scene_error(plastic("yield_stress = \"1 MPa\"\nhardening_modulus = \"-1 MPa\"\n"),
+                     {"\"-1 MPa\"", "material.hardening_modulus", "-1 MPa", ">= 0"});
+}
+
 TEST(SceneFile, Expressions) {
   const std::string head = "[initial]\nvelocity = ";
   expect_scene_error(plane_scene(head + "[\"0\", \"sin(W*X)\"]\n"),
