@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace concord::calculix {
 namespace {
 
@@ -91,9 +93,16 @@ Options read_options(const scene::Problem& problem, const scene::RunRequest& req
     throw InputError({"request"}, "perturb", fmt::format("{:g}", request.perturb),
                      "0 for method calculix, which takes the mesh as gmsh makes it");
   Options o;
-  const double steps = settings.number("steps");
-  o.steps = steps >= 1 ? static_cast<int>(steps) : problem.load_steps;
-  o.hardening_points = static_cast<int>(settings.number("hardening_points"));
+  const auto whole = [&](const char* key) {
+    const double value = settings.number(key);
+    if (value != std::floor(value))
+      throw InputError({problem.file.string()}, std::string("calculix.") + key,
+                       fmt::format("{:g}", value), "a whole number");
+    return static_cast<int>(value);
+  };
+  const int steps = whole("steps");
+  o.steps = steps >= 1 ? steps : problem.load_steps;
+  o.hardening_points = whole("hardening_points");
   o.tolerance = settings.number("tolerance");
   o.keep_files = settings.flag("keep_files");
   return o;

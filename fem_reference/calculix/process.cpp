@@ -35,7 +35,9 @@ class Child {
   }
   /// True once it has ended; `status` is then that of waitpid.
   bool ended(int& status) {
-    if (waitpid(m_pid, &status, WNOHANG) != m_pid) return false;
+    const pid_t found = waitpid(m_pid, &status, WNOHANG);
+    if (found == 0) return false;
+    if (found < 0) status = 0;  // nobody to wait for: its files tell how it went
     m_pid = 0;
     return true;
   }
