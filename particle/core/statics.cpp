@@ -192,19 +192,12 @@ void Statics::solve(const Column& right, Column& correction, bool lift) {
 }
 
 bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& outcome) {
-  const Column start = m_u;
   Column correction(m_u.size(), 0.0), trial = m_u;
   m_constraints.impose(t, trial);
   for (std::size_t k = 0; k < trial.size(); ++k) correction[k] = trial[k] - m_u[k];
   double residual = 0, before = 0;
-  const double scale = m_scale;
-  const auto give_up = [&] {
-    m_u = start;
-    m_scale = scale;
-    return false;
-  };
   // Predictor: loads of the new step on the old state.
-  if (!try_displacement(Column(start), t, before)) return give_up();
+  if (!try_displacement(Column(m_u), t, before)) return false;
   if (m_free == 0) return try_displacement(trial, t, residual);
   solve(Column(m_f), correction, true);
   for (int it = 1; it <= options.most_iterations; ++it) {
@@ -225,7 +218,7 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
       double again = 0;
       return try_displacement(base, t, again);
     }
-    if (!accepted) return give_up();
+    if (!accepted) return false;
     const bool polish = options.tolerance <= StaticsOptions().tolerance;
     if (it > 1 && residual <= options.tolerance * m_scale &&
         (!polish || residual > 0.25 * before))
@@ -238,7 +231,7 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
   }
   m_failure = fmt::format("residual {:.3g} of {:.3g} after {} iterations", residual, m_scale,
                           options.most_iterations);
-  return before <= 100 * options.tolerance * m_scale || give_up();
+  return before <= 100 * options.tolerance * m_scale;
 }
 
 State Statics::state() const {
@@ -266,14 +259,16 @@ void Statics::run(const StaticsOptions& options, Recorder& recorder, StaticsOutc
   while (m_t < 1 - 1e-12) {
     const double t = std::min(1.0, m_t + step);
     const Column start = m_u;
+    const double scale = m_scale;
     bool reached = false;
     try {
       reached = step_to(t > 1 - 1e-12 ? 1.0 : t, options, outcome);
     } catch (const BadState& bad) {
       m_failure = bad.quantity;
-      m_u = start;
     }
     if (!reached) {
+      m_u = start;
+      m_scale = scale;
       step *= 0.5;
       if (step >= smallest) continue;
       (void)evaluate(m_t);  // forces of the last equilibrium, for the result
