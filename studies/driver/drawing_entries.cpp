@@ -44,6 +44,15 @@ void read_axes(StrictTable& table, Plot& plot) {
   plot.y_scale = table.optional_number("y_scale");
 }
 
+/// One column, or several in one plot.
+void read_history(StrictTable& table, Plot& plot) {
+  plot.columns = table.texts("columns");
+  if (plot.columns.empty()) plot.quantity = table.text("quantity");
+  plot.resolutions = table.positive_numbers("resolutions");
+  plot.change = table.flag_or("change", false);
+  plot.baseline = read_baseline(table);
+}
+
 Panel read_panel(StrictTable& table) {
   Panel panel;
   panel.color = table.text_or("color", "");
@@ -51,6 +60,7 @@ Panel read_panel(StrictTable& table) {
   panel.resolution = table.optional_number("resolution");
   panel.caption = table.text_or("caption", "");
   if (table.node("difference")) panel.difference = table.flag_or("difference", false);
+  panel.time = table.optional_number("time");
   return panel;
 }
 
@@ -82,6 +92,8 @@ Plot read_plot(StrictTable table) {
     plot.y = table.text("y");
     plot.resolutions = table.positive_numbers("resolutions");
     plot.inset = read_window(table, "inset");
+  } else if (plot.kind == "history") {
+    read_history(table, plot);
   } else {
     plot.quantity = table.text("quantity");
   }
@@ -101,6 +113,7 @@ Picture read_picture(StrictTable table) {
   picture.body = read_panel(table);
   if (picture.body.color.empty()) table.missing("color", "a point field of the frames");
   picture.columns = table.optional_number("columns");
+  picture.times = table.numbers("times");
   picture.scale_displacement = table.number_or("scale_displacement", 1);
   for (StrictTable& entry : table.inner_tables("panels")) {
     picture.panels.push_back(read_panel(entry));
@@ -108,7 +121,6 @@ Picture read_picture(StrictTable table) {
   }
   read_color_range(table, picture);
   picture.crop = read_window(table, "crop");
-  picture.time = table.optional_number("time");
   table.finish();
   return picture;
 }

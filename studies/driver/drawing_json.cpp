@@ -67,6 +67,7 @@ void put_panel(json& object, const Study& study, const Panel& panel) {
   put_text(object, "color", panel.color);
   put_text(object, "caption", panel.caption);
   if (panel.difference) object["difference"] = *panel.difference;
+  put(object, "time", panel.time);
 }
 
 json baseline_json(const Study& study, const Baseline& baseline) {
@@ -96,6 +97,8 @@ json plot_json(const Study& study, const Plot& plot) {
   put_cases(object, study, plot.selector);
   put(object, "resolution", plot.resolution);
   if (!plot.resolutions.empty()) object["resolutions"] = plot.resolutions;
+  if (!plot.columns.empty()) object["columns"] = plot.columns;
+  if (plot.change) object["change"] = true;
   put(object, "slope", plot.slope);
   put_window(object, "inset", plot.inset);
   for (const Baseline& baseline : plot.baseline)
@@ -118,8 +121,8 @@ json picture_json(const Study& study, const Picture& picture) {
   if (picture.common_range) object["range"] = "common";
   put_range(object, "range", picture.range);
   put_window(object, "crop", picture.crop);
-  put(object, "time", picture.time);
   put(object, "columns", picture.columns);
+  if (!picture.times.empty()) object["times"] = picture.times;
   for (const Panel& panel : picture.panels) {
     if (!study.full && !has_run(study, panel)) continue;  // of the full report only
     json one = json::object();

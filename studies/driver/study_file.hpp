@@ -95,7 +95,8 @@ struct Claim {
   SourcePosition where;
 };
 
-/// A horizontal line of a sweep: what a case without the setting reaches.
+/// A horizontal line of a sweep: what a case without the setting reaches; of a history: a run
+/// to compare with.
 struct Baseline {
   Selector selector;
   std::optional<double> resolution;
@@ -113,8 +114,10 @@ struct Plot {
   std::string kind, quantity, title, setting, setting_y;
   Selector selector;
   std::optional<double> resolution, slope;
-  std::vector<double> resolutions;  ///< curve; empty: all
-  std::string x, y;                 ///< curve: columns of history.csv
+  std::vector<double> resolutions;   ///< curve, history; empty: all
+  std::vector<std::string> columns;  ///< history: several columns in one plot
+  bool change = false;               ///< history: value minus the first one
+  std::string x, y;                  ///< curve: columns of history.csv
   std::string x_label, y_label, label;
   std::optional<double> x_scale, y_scale;
   std::vector<Baseline> baseline;
@@ -127,6 +130,7 @@ struct Panel {
   std::optional<double> resolution;  ///< absent: the finest that has frames
   std::string color, caption;      ///< color: a point field; of a panel: absent, the picture's
   std::optional<bool> difference;  ///< the run's difference.hdf instead of its last frame
+  std::optional<double> time;      ///< of the frame, the nearest one [s]; absent: the last
 };
 
 struct Picture {
@@ -134,10 +138,10 @@ struct Picture {
   double scale_displacement = 1;
   std::vector<Panel> panels;      ///< bodies side by side; empty: one body
   std::optional<double> columns;  ///< panels in a row
+  std::vector<double> times;      ///< a row of panels each [s]; empty: the panels as they are
   bool common_range = false;      ///< one scale for all panels
   std::optional<Range> range;     ///< ends of the scale
   std::optional<Window> crop;     ///< part of the plane shown [m]
-  std::optional<double> time;     ///< of the frame; absent: the last
 };
 
 struct Study {

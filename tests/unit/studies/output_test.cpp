@@ -108,6 +108,8 @@ TEST(StudyJson, PicturesCarryTheirPanelsRangeAndCrop) {
   Panel panel;
   panel.selector.method = "delaunay";
   panel.difference = true;
+  panel.time = 0.25;
+  picture.times = {0.1, 0.2};
   picture.panels.push_back(panel);
   study.pictures.push_back(picture);
   const auto json = study_json(judged(study))["pictures"][0];
@@ -116,6 +118,9 @@ TEST(StudyJson, PicturesCarryTheirPanelsRangeAndCrop) {
   EXPECT_FALSE(json["crop"].contains("y"));
   EXPECT_EQ(json["panels"][0]["method"], "delaunay");
   EXPECT_EQ(json["panels"][0]["difference"], true);
+  EXPECT_EQ(json["panels"][0]["time"], 0.25);
+  EXPECT_EQ(json["times"], (std::vector<double>{0.1, 0.2}));
+  EXPECT_FALSE(json.contains("time"));
   EXPECT_EQ(json["color"], "s");
   EXPECT_FALSE(json["panels"][0].contains("color")) << "the picture's";
 }

@@ -165,6 +165,26 @@ TEST_F(StudyFile, ReadsComparisons) {
                "compare.reference");
 }
 
+TEST_F(StudyFile, ReadsHistoriesOfSeveralColumnsAndPicturesAtInstants) {
+  const Study drawn =
+      read(one_case +
+           "[[plot]]\nkind = \"history\"\ncolumns = [\"a_J\", \"b_J\"]\nresolutions = [4, 8]\n"
+           "change = true\nbaseline = [{ method = \"delaunay\" }]\n"
+           "[[picture]]\ncolor = \"s\"\ntimes = [0.1, 0.2]\ntime = 0.3\n"
+           "panels = [{ method = \"delaunay\", time = 0.1 }, { method = \"delaunay\" }]\n");
+  EXPECT_EQ(drawn.plots[0].columns, (std::vector<std::string>{"a_J", "b_J"}));
+  EXPECT_EQ(drawn.plots[0].resolutions, (std::vector<double>{4, 8}));
+  EXPECT_TRUE(drawn.plots[0].change);
+  EXPECT_EQ(drawn.plots[0].baseline.size(), 1);
+  EXPECT_EQ(drawn.pictures[0].times, (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(drawn.pictures[0].body.time, 0.3);
+  EXPECT_EQ(drawn.pictures[0].panels.at(0).time, 0.1);
+  EXPECT_FALSE(drawn.pictures[0].panels.at(1).time) << "the picture's";
+  expect_error(one_case + "[[plot]]\nkind = \"history\"\n", 8, "quantity");
+  expect_error(one_case + "[[plot]]\nkind = \"cost\"\nquantity = \"h\"\ncolumns = [\"a\"]\n",
+               11, "columns");
+}
+
 TEST_F(StudyFile, ReadsMinimaCurvesMapsAndPanels) {
   const std::string claim = one_case + "sweep = { psi = [0.1, 1] }\n[[claim]]\nid = \"a\"\n"
                                        "statement = \"s\"\nsource = \"s\"\nquantity = \"h\"\n";
