@@ -21,6 +21,12 @@ struct BadState {
   Index particle;
 };
 
+/// Consecutive particles [first, last).
+struct ParticleRange {
+  Index first, last;
+  friend bool operator==(const ParticleRange&, const ParticleRange&) = default;
+};
+
 /// Stored energies [J].
 struct Energies {
   double internal = 0;  ///< sum V_a U(F_a), Eq. (14); with plasticity the elastic part
@@ -55,6 +61,25 @@ class ForceModel {
   /// det F <= 0 or NaN (lowest particle number).
   virtual void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
                       const Executor& executor) = 0;
+
+  /// Whether forces_of() and reach() are there. A model whose force on a particle is a sum in
+  /// an order that no other particle, thread or part has a say in can offer them: it loops over
+  /// the parts instead of [0, n), after computing what they need of their neighbours (stresses
+  /// of the particles within reach), and `forces` is forces_of({{0, n}}). Regions at rest
+  /// (rest_regions.hpp) and two-rate steps live on it.
+  virtual bool has_parts() const { return false; }
+
+  /// Forces on the particles of `parts` (ascending, apart, not empty) alone, the same bits as
+  /// forces() gives them; f of all others stays as it is. Reads u and v within reach() of the
+  /// parts. With plasticity only the parts get a trial state, so a commit() after it is for
+  /// particles that have none to take: those that have never been strained.
+  virtual void forces_of(std::span<const ParticleRange> parts, std::span<const double> u,
+                         std::span<const double> v, std::span<double> f,
+                         const Executor& executor);
+
+  /// The particles on whose state the forces on `part` depend: it and two rings of neighbours,
+  /// rounded up to a range.
+  virtual ParticleRange reach(ParticleRange part) const;
 
   /// Energies at displacement u.
   virtual Energies energies(std::span<const double> u, const Executor& executor) = 0;
@@ -104,5 +129,12 @@ class ForceModel {
   const Body& m_body;
   Constitution m_constitution;
 };
+
+inline void ForceModel::forces_of(std::span<const ParticleRange>, std::span<const double>,
+                                  std::span<const double>, std::span<double>, const Executor&) {
+  throw std::logic_error("forces_of() of a model without parts");
+}
+
+inline ParticleRange ForceModel::reach(ParticleRange) const { return {0, m_body.n}; }
 
 }  // namespace concord::particle
