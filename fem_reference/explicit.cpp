@@ -1,7 +1,6 @@
 #include "fem_reference/matrix_free.hpp"
 #include "fem_reference/run.hpp"
-
-#include "scene/geometry.hpp"
+#include "fem_reference/spectrum.hpp"
 
 #include <cmath>
 
@@ -9,60 +8,6 @@ namespace concord::fem {
 namespace {
 
 using Vector = State::Vector;
-
-/// Largest eigenvalue of M^-1 K on the free unknowns by power iteration on the differenced
-/// force, (f(u + e x) - f(u)) / e, with e |x| = 1e-6 of the smallest cell: strains of about
-/// 1e-6 keep both the truncation (1e-6) and the round-off (1e-10) far below the 1e-3 asked for.
-class Spectrum {
- public:
-  template <int dim>
-  Spectrum(const Run<dim>& run, const InternalForce& force, const Vector& mass)
-      : m_force(force), m_mass(mass), m_x(mass.size()), m_free(mass.size(), 1),
-        m_probe(1e-6 * run.discretisation.smallest_cell()) {
-    for (std::size_t k = 0; k < run.prescribed.size(); ++k) m_free[run.prescribed.dof(k)] = 0;
-    for (unsigned i = 0; i < m_x.size(); ++i) {
-      m_x[i] = m_free[i] != 0 ? scene::uniform_random(1, i, 0) - 0.5 : 0.0;
-    }
-  }
-
-  /// Angular frequency omega_max [1/s] at u with internal force f(u); 0 when nothing is free.
-  /// The growth ratio approaches the eigenvalue from below: the safety factor dt_factor covers
-  /// it.
-  double omega(const Vector& u, const Vector& f, int least, int most) {
-    Vector moved(u.size()), y(u.size());
-    double lambda = 0;
-    for (int k = 0; k < most; ++k) {
-      const double size = m_x.linfty_norm();
-      if (size == 0) return 0;
-      const double e = m_probe / size;
-      moved = u;
-      moved.add(e, m_x);
-      if (m_force.force(moved, y) >= 0) return std::sqrt(m_lambda);
-      y -= f;
-      double old_norm = 0, new_norm = 0;
-      for (unsigned i = 0; i < y.size(); ++i) {
-        y[i] = m_free[i] != 0 ? y[i] / (e * m_mass[i]) : 0.0;
-        old_norm += m_mass[i] * m_x[i] * m_x[i];
-        new_norm += m_mass[i] * y[i] * y[i];
-      }
-      const double next = std::sqrt(new_norm / old_norm);
-      m_x = y;
-      if (next > 0) m_x *= 1 / next;
-      const bool settled = k + 1 >= least && std::abs(next - lambda) <= 1e-3 * next;
-      lambda = next;
-      if (settled) break;
-    }
-    m_lambda = lambda;
-    return std::sqrt(lambda);
-  }
-
- private:
-  const InternalForce& m_force;
-  const Vector& m_mass;
-  Vector m_x;
-  std::vector<char> m_free;
-  double m_probe, m_lambda = 0;
-};
 
 /// Motion of the prescribed unknowns: u at t + dt, and v and a by central differences in time.
 template <int dim> class Motion {
@@ -135,7 +80,9 @@ template <int dim> void run_explicit(Run<dim>& run) {
   };
   run.observer.connect(*force, mass_product);
   const Motion<dim> motion(run);
-  Spectrum spectrum(run, *force, mass);
+  Spectrum spectrum(
+      *force, mass, [&](unsigned dof) { return run.prescribed.is_given(dof); },
+      run.discretisation.smallest_cell());
   impose(run.prescribed, 0, state.u);
   check(state, force->force(state.u, state.internal));
   run.loads.evaluate(0, state.external);
@@ -146,7 +93,8 @@ template <int dim> void run_explicit(Run<dim>& run) {
     return omega > 0 ? 2 / omega : end;
   };
   const bool chosen = run.options.dt > 0;
-  double dt = chosen ? run.options.dt : run.options.dt_factor * stable_step(20, 200);
+  double dt =
+      chosen ? run.options.dt : run.options.dt_factor * stable_step(first_least, first_most);
   dt = whole_steps(end, std::min(dt, end));
   accelerate(state, mass);
   motion.impose_rates(state, dt);

@@ -30,7 +30,7 @@ std::vector<std::string> candidates() {
   return paths;
 }
 
-decltype(&concord_fem_run) load() {
+void* load_library() {
   std::string tried;
   for (const std::string& path : candidates()) {
     const bool bare = path.find('/') == std::string::npos;
@@ -39,13 +39,7 @@ decltype(&concord_fem_run) load() {
       continue;
     }
     void* library = dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (library == nullptr) {
-      tried += std::string("\n  ") + dlerror();
-      continue;
-    }
-    if (void* symbol = dlsym(library, "concord_fem_run")) {
-      return reinterpret_cast<decltype(&concord_fem_run)>(symbol);
-    }
+    if (library != nullptr) return library;
     tried += std::string("\n  ") + dlerror();
   }
   throw InputError({}, "method", "fem",
@@ -54,14 +48,26 @@ decltype(&concord_fem_run) load() {
                        tried);
 }
 
-class FiniteElements : public scene::Method {
+/// A function of the library, which is loaded at the first call.
+template <class Function> Function* entry(const char* name) {
+  static void* const library = load_library();
+  if (void* symbol = dlsym(library, name)) return reinterpret_cast<Function*>(symbol);
+  throw InputError({}, "method", "fem", std::string("a library of this build: ") + dlerror());
+}
+
+class FiniteElements : public scene::Method, public scene::Discretises {
  public:
   const scene::MethodInfo& info() const override { return method_info(); }
   void run(const scene::Problem& problem, const scene::RunRequest& request,
            scene::Result& result) const override {
     read_options(problem, request);  // wrong settings are told before the library is loaded
-    static const auto run_fem = load();
-    run_fem(problem, request, result);
+    entry<decltype(concord_fem_run)>("concord_fem_run")(problem, request, result);
+  }
+  std::unique_ptr<scene::DiscreteBody>
+  discretise(const scene::Problem& problem, const scene::RunRequest& request) const override {
+    read_options(problem, request);
+    return std::unique_ptr<scene::DiscreteBody>(
+        entry<decltype(concord_fem_discretise)>("concord_fem_discretise")(problem, request));
   }
 };
 

@@ -3,7 +3,7 @@
 // histories, frames, result.
 
 #include "particle/core/force_model.hpp"
-#include "scene/method.hpp"
+#include "scene/discrete_body.hpp"
 
 #include <memory>
 
@@ -12,7 +12,7 @@ namespace concord::particle {
 /// A particle formulation as a Method. It says what it is and makes its force model; the rest
 /// is the same for all. To add a formulation: derive, implement make_model, and register with
 /// scene::RegisterMethod.
-class ParticleMethod : public scene::Method {
+class ParticleMethod : public scene::Method, public scene::Discretises {
  public:
   /// `own`: name, title, source and the formulation's own parameters; those of the solvers are
   /// appended.
@@ -20,6 +20,8 @@ class ParticleMethod : public scene::Method {
   const scene::MethodInfo& info() const final { return m_info; }
   void run(const scene::Problem& problem, const scene::RunRequest& request,
            scene::Result& result) const final;
+  std::unique_ptr<scene::DiscreteBody> discretise(const scene::Problem& problem,
+                                                  const scene::RunRequest& request) const final;
 
   /// Which cells lie between the particles of this formulation.
   virtual CellSource cells(const scene::Settings& settings) const;

@@ -3,9 +3,6 @@
 
 #include "particle/core/tangent.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
-
-#include <stdexcept>
-
 namespace concord::sph {
 namespace {
 
@@ -48,7 +45,10 @@ particle::PairTangent ganzenmueller_pair(double k, const Vec3& l, const Vec3& x)
 }  // namespace
 
 const particle::ForceModel::Stiffness& TotalLagrangianSph::tangent(std::span<const double> u) {
-  if (m_points.images() > 0) throw std::logic_error("tlsph: tangent with mirror particles");
+  if (m_points.images() > 0) {
+    throw InputError({}, "tlsph.planes", "mirror",
+                     "truncated where a tangent is asked for: it knows no images");
+  }
   const Executor one_thread(1);
   update_gradients(state(u, {}, {}, one_thread), one_thread);
   std::vector<particle::Moduli> moduli(m_body.n);
