@@ -34,7 +34,8 @@ Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model,
                    const Constraints& constraints, const ExternalLoads& loads,
                    const Executor& executor, double ramp_time)
     : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads),
-      m_executor(executor), m_ramp(ramp_time), m_work(model.body(), constraints, loads) {
+      m_executor(executor), m_ramp(ramp_time), m_work(model.body(), constraints, loads),
+      m_dissipation(model, constraints, loads, executor) {
   const Body& body = model.body();
   m_u.assign(body.X.size(), 0.0);
   m_v = m_f = m_u;
@@ -119,12 +120,14 @@ double Leapfrog::largest_gradient() const {
 
 State Leapfrog::state() {
   const Body& body = m_model.body();
+  // A kick of half a step: (v_n - v) / (dt/2) = f/m - c (v + v_n)/2, v at the half step before.
+  const double share = 1 / (1 + 0.25 * m_damping * m_dt_last);
   m_v_full = m_v;
   m_acceleration.assign(m_f.size(), 0.0);
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0; i < body.dim; ++i) {
       const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
-      m_acceleration[k] = m_f[k] * m_inverse_mass[a] - m_damping * m_v[k];
+      m_acceleration[k] = share * (m_f[k] * m_inverse_mass[a] - m_damping * m_v[k]);
     }
   }
   m_constraints.clear(m_acceleration);
@@ -137,6 +140,10 @@ State Leapfrog::state() {
   s.unbalanced = m_f;
   s.acceleration = m_acceleration;
   s.external_work = m_work.total(m_u, m_v_full);
+  s.impulse = m_work.constant_resultant() * m_t;
+  if (!m_dissipation.active()) return s;
+  m_dissipation.before(load_time(), m_u, m_v, m_f);
+  s.dissipation = m_dissipation.work() + m_dissipation.taken(0.5 * m_dt_last, m_v_full);
   return s;
 }
 
@@ -172,8 +179,12 @@ class Leapfrog::Schedule {
 
 void Leapfrog::step(double dt) {
   m_in_step = true;
-  kick(0.5 * (m_dt_last + dt), m_damping);
+  const double kick_dt = 0.5 * (m_dt_last + dt);
+  const bool dissipates = m_dissipation.active();
+  if (dissipates) m_dissipation.before(load_time(), m_u, m_v, m_f);
+  kick(kick_dt, m_damping);
   drift(dt);
+  if (dissipates) m_dissipation.add(kick_dt, m_v);
   m_dt_last = dt;
   evaluate();
   m_model.commit();
@@ -247,6 +258,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     evaluate();
     m_model.commit();
     m_work.start(load_time(), m_u, m_f);
+    m_dissipation.start(m_damping);
     write(recorder, true, true);
     advance(options, recorder, outcome);
   } catch (const BadState& bad) {

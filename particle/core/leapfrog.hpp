@@ -81,6 +81,7 @@ class Leapfrog {
   Column m_u, m_v, m_f;  ///< displacement, half-step velocity, total force on all components
   Column m_v_full, m_acceleration;  ///< for output
   ExternalWork m_work;
+  Dissipation m_dissipation;
   double m_t = 0, m_dt_last = 0, m_damping = 0;
   bool m_in_step = false;                 ///< a step has begun and its state has not been taken
   double m_row_at = -1, m_frame_at = -1;  ///< times last written

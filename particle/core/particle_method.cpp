@@ -18,6 +18,13 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
+/// Whether the run has mass damping: asked for, or that of a static scene's damped motion.
+bool damped(const scene::Problem& problem, const scene::Settings& settings) {
+  if (settings.number("damping") > 0) return settings.word("solver") != "static";
+  return problem.is_static && settings.word("solver") == "explicit" &&
+         !(settings.number("duration") > 0);
+}
+
 /// One run, so that what was reached can be told from wherever it ends.
 struct Run {
   const scene::Problem& problem;
@@ -39,6 +46,7 @@ struct Run {
     std::vector<Mat3> H;
     for (const Mat3& F : result.samples.F) H.push_back(F - Mat3::Identity());
     result.field = std::make_shared<ParticleField>(body, result.samples.u, H);
+    recorder.add_hourglass(result);
   }
 
   void statics() {
@@ -53,7 +61,7 @@ struct Run {
       result.steps = outcome.iterations;
       result.wall_s = outcome.solve_s;
       finish(solver.state());
-      if (problem.material.plastic()) recorder.add_invariants(result, false);
+      if (problem.material.plastic()) recorder.add_invariants(result);
     };
     try {
       solver.run(options, recorder, outcome);
@@ -85,8 +93,7 @@ struct Run {
       result.dt = outcome.dt;
       result.wall_s = outcome.loop_s;
       finish(integrator.state());
-      if (!problem.is_static || duration > 0)
-        recorder.add_invariants(result, options.damping > 0 || model.viscous());
+      recorder.add_invariants(result);
     };
     try {
       integrator.run(options, recorder, outcome);
@@ -172,7 +179,9 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   const std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, body);
-  Recorder recorder(problem, *model, constraints, executor, request.out, request.write_frames);
+  const bool dissipative = model->viscous() || damped(problem, settings);
+  Recorder recorder(problem, *model, constraints, executor, request.out, request.write_frames,
+                    dissipative);
   result.h = request.h;
   result.particles = body.n;
   result.unknowns = constraints.unknowns();

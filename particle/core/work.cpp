@@ -77,4 +77,58 @@ double ExternalWork::total(std::span<const double> u, std::span<const double> v)
   return work;
 }
 
+Vec3 ExternalWork::constant_resultant() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t k = 0; k < m_constant.size(); ++k) {
+    if (static_cast<int>(k % m_body.stride) < m_body.dim)
+      sum[k % m_body.stride] += m_constant[k];
+  }
+  return sum;
+}
+
+void Dissipation::start(double rate) {
+  m_work = 0;
+  m_rate = rate;
+  m_viscous = m_model.viscous();
+  if (m_viscous) m_rest.assign(m_model.body().X.size(), 0.0);
+  if (m_viscous) m_force = m_rest;
+}
+
+void Dissipation::before(double t, std::span<const double> u, std::span<const double> v,
+                         std::span<const double> f) {
+  m_v.assign(v.begin(), v.end());
+  if (!m_viscous) return;
+  m_model.forces(u, m_rest, m_force, m_executor);
+  m_loads.add(t, m_force);
+  for (std::size_t k = 0; k < f.size(); ++k) m_force[k] = f[k] - m_force[k];
+}
+
+double Dissipation::taken(double dt, std::span<const double> v) const {
+  const Body& body = m_model.body();
+  const auto mean = [&](std::size_t k) { return 0.5 * (m_v[k] + v[k]); };
+  double power = 0;
+  if (m_viscous) {
+    power = m_executor.sum(v.size(), [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t k = begin; k < end; ++k) sum -= m_force[k] * mean(k);
+      return sum;
+    });
+  }
+  if (!(m_rate > 0)) return dt * power;
+  const auto S = static_cast<std::size_t>(body.stride);
+  double damped = m_executor.sum(body.n, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t a = begin; a < end; ++a) {
+      for (std::size_t k = a * S; k < (a + 1) * S; ++k) sum += body.m[a] * mean(k) * mean(k);
+    }
+    return sum;
+  });
+  // Prescribed components move as they are told, undamped.
+  for (const PrescribedDof& dof : m_constraints.dofs()) {
+    const std::size_t k = dof.particle * S + dof.component;
+    damped -= body.m[dof.particle] * mean(k) * mean(k);
+  }
+  return dt * (power + m_rate * damped);
+}
+
 }  // namespace concord::particle
