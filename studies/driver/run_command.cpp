@@ -4,6 +4,8 @@
 #include "scene/output.hpp"
 #include "scene/reader.hpp"
 #include "studies/driver/cache.hpp"
+#include "studies/driver/given.hpp"
+#include "studies/driver/memory.hpp"
 #include "studies/driver/progress.hpp"
 
 #include <fmt/format.h>
@@ -13,38 +15,6 @@
 namespace concord::studies {
 namespace fs = std::filesystem;
 namespace {
-
-/// What --set gave, sorted by whom it concerns.
-struct Given {
-  std::vector<scene::Override> of_scene;
-  std::map<std::string, std::string> of_method;
-};
-
-/// A key whose first part is a method's name is a setting of that method, any other one of the
-/// scene.
-Given sort_settings(const RunOptions& options) {
-  Given given;
-  for (const std::string& text : options.set) {
-    const std::size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos)
-      throw InputError({"command line"}, "--set", '"' + text + '"', "key=value");
-    const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
-    const std::string prefix = key.substr(0, key.find('.'));
-    bool of_method = false;
-    for (const scene::Method* method : scene::MethodRegistry::instance().all())
-      of_method = of_method || method->info().name == prefix;
-    if (!of_method) {
-      given.of_scene.emplace_back(key, value);
-    } else if (prefix == options.method && key.size() > prefix.size() + 1) {
-      given.of_method[key.substr(prefix.size() + 1)] = value;
-    } else {
-      throw InputError({"command line"}, "--set " + key, "a setting of method " + prefix,
-                       "settings of the method that runs (" + options.method +
-                           ") and keys of the scene");
-    }
-  }
-  return given;
-}
 
 void print_map(const char* title, const std::map<std::string, double>& values) {
   for (const auto& [name, value] : values) {
@@ -67,22 +37,10 @@ void print_summary(const scene::RunIdentity& id, const scene::Result& result,
   fmt::print("  {}\n", (out / "summary.json").string());
 }
 
-void check(const RunOptions& options) {
-  const auto reject = [](const char* key, double found, const char* allowed) {
-    throw InputError({"command line"}, key, fmt::format("{:g}", found), allowed);
-  };
-  if (!(options.resolution > 0) || !std::isfinite(options.resolution))
-    reject("--resolution", options.resolution,
-           "a number above 0: spacings along the scene's reference length");
-  if (!(options.perturb >= 0 && options.perturb <= max_perturb))
-    reject("--perturb", options.perturb, "a fraction of the spacing from 0 to 0.45");
-  if (options.threads < 1) reject("--threads", options.threads, "1 or more");
-}
-
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  check(options);
+  check_numbers(options);
   const scene::Method& method = scene::MethodRegistry::instance().find(options.method);
   const Given given = sort_settings(options);
   const scene::Settings settings(options.method, method.info().parameters, given.of_method);
@@ -110,8 +68,11 @@ int run_command(const RunOptions& options) {
   };
   scene::Result result;
   result.threads = options.threads;
+  const MemoryUse memory;
+  double bytes_per_particle = std::nan("");
   try {
     method.run(problem, request, result);
+    bytes_per_particle = memory.bytes_per_particle(result.particles);
     scene::add_exact_errors(problem, result);
   } catch (const InputError&) {
     throw;
@@ -120,7 +81,8 @@ int run_command(const RunOptions& options) {
     throw;
   }
   progress.finish();
-  scene::write_file(out / "summary.json", scene::summary_json(id, result));
+  scene::write_file(out / "summary.json",
+                    with_memory(scene::summary_json(id, result), bytes_per_particle));
   print_summary(id, result, out);
   return 0;
 }
