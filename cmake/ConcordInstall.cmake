@@ -16,7 +16,7 @@ foreach(room scene particle sph_reference)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scene/library DESTINATION ${CMAKE_INSTALL_DATADIR}/concord/scene)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/studies DESTINATION ${CMAKE_INSTALL_DATADIR}/concord
-        PATTERN driver EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+        PATTERN driver EXCLUDE PATTERN probes EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/reports DESTINATION ${CMAKE_INSTALL_DATADIR}/concord
         PATTERN __pycache__ EXCLUDE PATTERN node_modules EXCLUDE)
 

@@ -16,32 +16,53 @@ namespace {
 /// Options of all subcommands, and the job that the chosen one sets.
 struct Commands {
   RunOptions run;
+  ProbeOptions probe;
   StudyOptions study, report;
   std::string filter, list_what, name, study_name;
   bool as_json = false;
   std::function<int()> job;
 };
 
+/// What a run and a probe are asked for alike.
+void add_problem(CLI::App* command, RunOptions& options, const char* out) {
+  command
+      ->add_option("SCENE", options.scene,
+                   "a scene of the library, or the path of a scene file")
+      ->required();
+  command->add_option("--method", options.method, "see: concord list methods")->required();
+  command
+      ->add_option("--resolution", options.resolution,
+                   "N: mean spacing h = L/N with the scene's reference length L")
+      ->capture_default_str();
+  command
+      ->add_option("--perturb", options.perturb,
+                   "random displacement of particles, fraction of h")
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "of the perturbation")->capture_default_str();
+  command->add_option("--threads", options.threads)->capture_default_str();
+  command->add_option("--set", options.set, "key=value of the scene, or METHOD.key=value")
+      ->take_all();
+  command->add_option("--out", options.out, out);
+}
+
 void add_run(CLI::App& app, Commands& commands) {
   CLI::App* run = app.add_subcommand("run", "run one method on one scene");
-  RunOptions& options = commands.run;
-  run->add_option("SCENE", options.scene, "a scene of the library, or the path of a scene file")
-      ->required();
-  run->add_option("--method", options.method, "see: concord list methods")->required();
-  run->add_option("--resolution", options.resolution,
-                  "N: mean spacing h = L/N with the scene's reference length L")
-      ->capture_default_str();
-  run->add_option("--perturb", options.perturb,
-                  "random displacement of particles, fraction of h")
-      ->capture_default_str();
-  run->add_option("--seed", options.seed, "of the perturbation")->capture_default_str();
-  run->add_option("--threads", options.threads)->capture_default_str();
-  run->add_option("--set", options.set, "key=value of the scene, or METHOD.key=value")
-      ->take_all();
-  run->add_option("--out", options.out, "default build/runs/SCENE-METHOD");
-  run->add_flag("--frames,!--no-frames", options.frames, "write field frames (default)");
+  add_problem(run, commands.run, "default build/runs/SCENE-METHOD");
+  run->add_flag("--frames,!--no-frames", commands.run.frames, "write field frames (default)");
   run->callback(
       [&commands] { commands.job = [&commands] { return run_command(commands.run); }; });
+}
+
+void add_probe(CLI::App& app, Commands& commands) {
+  CLI::App* probe = app.add_subcommand("probe", "a test of one method on one scene");
+  probe->add_option("TEST", commands.probe.test, "see: concord list probes")->required();
+  add_problem(probe, commands.probe, "default build/probes/TEST-SCENE-METHOD");
+  probe
+      ->add_option("--option", commands.probe.option,
+                   "key=value of the test; see: concord describe TEST")
+      ->take_all();
+  probe->callback(
+      [&commands] { commands.job = [&commands] { return probe_command(commands.probe); }; });
 }
 
 void add_studies(CLI::App& app, Commands& commands) {
@@ -72,14 +93,15 @@ void add_information(CLI::App& app, Commands& commands) {
   bench->add_option("FILTER", commands.filter, "regular expression");
   bench->callback(
       [&commands] { commands.job = [&commands] { return bench_command(commands.filter); }; });
-  CLI::App* list = app.add_subcommand("list", "scenes, methods and studies");
-  list->add_option("WHAT", commands.list_what, "scenes | methods | studies")
-      ->check(CLI::IsMember({"scenes", "methods", "studies"}));
+  CLI::App* list = app.add_subcommand("list", "scenes, methods, studies and probes");
+  list->add_option("WHAT", commands.list_what, "scenes | methods | studies | probes")
+      ->check(CLI::IsMember({"scenes", "methods", "studies", "probes"}));
   list->add_flag("--json", commands.as_json);
   list->callback([&commands] {
     commands.job = [&commands] { return list_command(commands.list_what, commands.as_json); };
   });
-  CLI::App* describe = app.add_subcommand("describe", "parameters of a scene, method or study");
+  CLI::App* describe =
+      app.add_subcommand("describe", "parameters of a scene, method, study or probe");
   describe->add_option("NAME", commands.name)->required();
   describe->callback(
       [&commands] { commands.job = [&commands] { return describe_command(commands.name); }; });
@@ -96,6 +118,7 @@ int run_job(int argc, char** argv) {
   app.require_subcommand(1);
   Commands commands;
   add_run(app, commands);
+  add_probe(app, commands);
   add_studies(app, commands);
   add_information(app, commands);
   try {

@@ -21,6 +21,13 @@ struct RunOptions {
 };
 int run_command(const RunOptions& options);
 
+/// A test that is no plain run: see studies/probes.
+struct ProbeOptions : RunOptions {
+  std::string test;
+  std::vector<std::string> option;  ///< "key=value" of the test; `out` empty: build/probes/...
+};
+int probe_command(const ProbeOptions& options);
+
 struct StudyOptions {
   std::vector<std::string> studies;  ///< of a report: empty means all
   bool full = false;

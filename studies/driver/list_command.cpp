@@ -4,6 +4,7 @@
 #include "scene/reader.hpp"
 #include "scene/suggest.hpp"
 #include "studies/driver/study_file.hpp"
+#include "studies/probes/probe.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -53,6 +54,15 @@ ordered_json studies() {
   for (const std::string& name : study_names(scene::data_home())) {
     const Study study = read_study(name, true, scene::data_home());
     list.push_back({{"name", name}, {"title", study.title}, {"source", study.source}});
+  }
+  return list;
+}
+
+ordered_json probe_list() {
+  ordered_json list = ordered_json::array();
+  for (const probes::Probe* probe : probes::ProbeRegistry::instance().all()) {
+    const probes::ProbeInfo& info = probe->info();
+    list.push_back({{"name", info.name}, {"title", info.title}, {"source", info.source}});
   }
   return list;
 }
@@ -114,13 +124,29 @@ void describe_scene(const std::string& name) {
   print_table(rows);
 }
 
+/// Keys of a method or probe, with a heading.
+void print_parameters(const std::vector<scene::ParameterInfo>& parameters) {
+  std::vector<std::vector<std::string>> rows{{"key", "unit", "default", "range", "meaning"}};
+  for (const scene::ParameterInfo& parameter : parameters)
+    rows.push_back({parameter.key, parameter.unit, parameter.default_value, parameter.range,
+                    parameter.meaning});
+  print_table(rows);
+}
+
 void describe_method(const scene::MethodInfo& info) {
   fmt::print("method {}: {}\n  source: {}\nsettings (--set {}.KEY=...):\n", info.name,
              info.title, info.source, info.name);
-  std::vector<std::vector<std::string>> rows{{"key", "unit", "default", "range", "meaning"}};
-  for (const scene::ParameterInfo& parameter : info.parameters)
-    rows.push_back({parameter.key, parameter.unit, parameter.default_value, parameter.range,
-                    parameter.meaning});
+  print_parameters(info.parameters);
+}
+
+void describe_probe(const probes::ProbeInfo& info) {
+  fmt::print("probe {}: {}\n  source: {}\noptions (--option KEY=...):\n", info.name, info.title,
+             info.source);
+  print_parameters(info.options);
+  fmt::print("quantities:\n");
+  std::vector<std::vector<std::string>> rows{{"name", "unit", "meaning"}};
+  for (const probes::QuantityInfo& quantity : info.quantities)
+    rows.push_back({quantity.name, quantity.unit, quantity.meaning});
   print_table(rows);
 }
 
@@ -152,6 +178,7 @@ int list_command(const std::string& what, bool as_json) {
   if (what.empty() || what == "scenes") lists["scenes"] = scenes();
   if (what.empty() || what == "methods") lists["methods"] = methods();
   if (what.empty() || what == "studies") lists["studies"] = studies();
+  if (what.empty() || what == "probes") lists["probes"] = probe_list();
   if (as_json) {
     fmt::print("{}\n", lists.dump(1));
     return 0;
@@ -182,6 +209,12 @@ int describe_command(const std::string& name) {
   }
   if (has(study_list, name)) {
     describe_study(name);
+    found = true;
+  }
+  for (const probes::Probe* probe : probes::ProbeRegistry::instance().all()) {
+    known.push_back(probe->info().name);
+    if (probe->info().name != name) continue;
+    describe_probe(probe->info());
     found = true;
   }
   if (found) return 0;

@@ -76,7 +76,7 @@ def folders(top, *parts):
 
 def registry_breaches(top, listed):
     """Folders against what the program lists. A formulation's folder names its method in its sources."""
-    for kind, on_disk in (("scenes", folders(top, "scene", "library")), ("studies", folders(top, "studies") - {"driver"})):
+    for kind, on_disk in (("scenes", folders(top, "scene", "library")), ("studies", folders(top, "studies") - {"driver", "probes"})):
         there = {item["name"] for item in listed[kind]}
         for name in on_disk ^ there:
             yield f"{kind}: {name} is {'a folder that the program does not list' if name in on_disk else 'listed without a folder'}"
@@ -103,7 +103,7 @@ def registry_breaches(top, listed):
 def readme_breaches(top):
     wanted = [top / room for room in ROOMS]
     wanted += [top / "scene/library" / name for name in folders(top, "scene", "library")]
-    wanted += [top / "studies" / name for name in folders(top, "studies") - {"driver"}]
+    wanted += [top / "studies" / name for name in folders(top, "studies") - {"driver", "probes"}]
     wanted += [top / "particle" / name for name in folders(top, "particle")]
     for room in ("sph_reference", "fem_reference"):
         wanted += [top / room / name for name in folders(top, room)]
