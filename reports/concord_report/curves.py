@@ -21,7 +21,7 @@ def curve(study, cases, plot):
     wanted = plot.get("resolutions") or ([plot["resolution"]] if plot.get("resolution") else [])
     lines, styles = [], {}
     for case in chosen(cases, plot):
-        levels = [l for l in case.levels if not wanted or any(_near(l.resolution, w) for w in wanted)]
+        levels = [l for l in case.levels if not wanted or any(near(l.resolution, w) for w in wanted)]
         for rank, level in enumerate(reversed(levels)):  # 0 for the finest
             found = next(filter(None, (_line(study, row, columns) for row in level.rows)), None)
             if not found:
@@ -31,7 +31,7 @@ def curve(study, cases, plot):
             round_ = style // len(DASHES)  # when all dashes are used up, paler ones follow
             lines.append({"case": -1 - len(lines), "method": case.method, "dash": style, "style": style,
                           "fade": max(0.35, 1 - 0.4 * round_), "x": x, "y": y, "rank": rank,
-                          "label": _label(case, level, row, len(levels) > 1), "low": None, "high": None, "slope": None, "broken": [broken(row)]})
+                          "label": run_label(case, level, row, len(levels) > 1), "low": None, "high": None, "slope": None, "broken": [broken(row)]})
     if not lines:
         return f"no history.csv of this report has the columns {columns[0]} and {columns[1]}"
     _mark(lines)
@@ -77,7 +77,7 @@ def _mark(lines):
         line["marks"] = sorted({round((k + (number + 0.5) / len(finest)) * (count - 1) / MARKS) for k in range(MARKS)})
 
 
-def _near(a, b):
+def near(a, b):
     """Resolutions are written with few digits: 72.7273 is 40/0.55."""
     return number(b) is not None and abs(a - b) <= 1e-4 * abs(b)
 
@@ -86,7 +86,7 @@ def _line(study, row, columns):
     return (*found, row) if (found := pair(study, row, *columns, FINE)) else None
 
 
-def _label(case, level, row, several):
+def run_label(case, level, row, several):
     """The case and, when there are several levels, how large the run was."""
     if not several:
         return case.label

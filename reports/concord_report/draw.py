@@ -190,6 +190,11 @@ def _linear(axes, one, values, is_x, levels):
     one.set_major_formatter(FuncFormatter(lambda v, _: exact(float(f"{v:.10g}"), digits)))
 
 
+def _hue(curve):
+    """Of the method, but where a plot has several columns of a run."""
+    return colour(curve.get("hue", curve["method"]))
+
+
 def _dashes(curve, width):
     style = tuple(float(v) / width for v in dash(curve.get("dash", curve["style"])).split())
     return (0, style) if style else "-"
@@ -198,9 +203,12 @@ def _dashes(curve, width):
 def _stroke(curve, sample=False):
     """What a curve's line looks like. Lines that may coincide carry a few markers, each its own
     places, so that each of them can be found."""
-    rank, hue = curve.get("rank", 0), colour(curve["method"])
-    look = {"color": hue, "linewidth": 1.7 if rank == 0 else 1.2, "linestyle": _dashes(curve, 1.7),
+    rank, hue = curve.get("rank", 0), _hue(curve)
+    width = 1.7 if rank == 0 else 1.2
+    look = {"color": hue, "linewidth": width, "linestyle": _dashes(curve, 1.7),
             "alpha": (1 if rank == 0 else max(0.35, 0.75 - 0.18 * rank)) * curve.get("fade", 1)}
+    if curve.get("reference"):
+        look |= {"linewidth": 4.2, "alpha": 0.4}
     if "marks" in curve:
         look |= {"marker": marker(curve["style"]), "markersize": 5, "markeredgewidth": 1.1, "markeredgecolor": hue,
                  "markerfacecolor": PAPER if hollow(curve["style"]) else hue}
@@ -210,9 +218,9 @@ def _stroke(curve, sample=False):
 
 
 def _line(axes, curve, number, long):
-    hue, style = colour(curve["method"]), curve["style"]
+    hue, style = _hue(curve), curve["style"]
     x, y, apart = curve["x"], curve["y"], curve.get("apart")
-    line, = axes.plot(x[1:] if apart else x, y[1:] if apart else y, zorder=3 - 0.1 * curve.get("rank", 0),
+    line, = axes.plot(x[1:] if apart else x, y[1:] if apart else y, zorder=2.5 if curve.get("reference") else 3 - 0.1 * curve.get("rank", 0),
                       clip_on=long, **_stroke(curve))
     line.set_gid(f"curve:{curve['case']}:{number}")
     broken = curve.get("broken") or [False] * len(x)
@@ -254,7 +262,7 @@ def _labels(axes, curves, legend=False):
     edge = box.x1 + 12 + (SAMPLE + 4 if legend else 0)
     figure, back = axes.figure, axes.figure.transFigure.inverted()
     for number, (curve, end, y) in enumerate(zip(curves, ends, places)):
-        start, look = (end[0] + 4, end[1]), {"linewidth": 0.7, "alpha": 0.7, "color": colour(curve["method"])}
+        start, look = (end[0] + 4, end[1]), {"linewidth": 0.7, "alpha": 0.7, "color": _hue(curve)}
         if legend:
             start, look = (edge - SAMPLE - 4, y), _stroke(curve, sample=True)
         line = list(zip(*(back.transform(p) for p in (start, ((start[0] + edge - 4) / 2, y), (edge - 4, y)))))

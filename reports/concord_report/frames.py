@@ -104,14 +104,44 @@ def facts(path, color, scale, crop=None):
         return {"missing": f"every value of '{color}' is NaN"}
     low, high = good_positions.min(axis=0), good_positions.max(axis=0)
     flat = bool(high[2] - low[2] < 1e-9 * max((high - low).max(), 1e-300))
+    plate = None if flat or crop else held(frame)
+    if plate:
+        good_positions = np.concatenate([good_positions, plate])
     def seen(axes):
         along = good_positions @ np.array(axes).T
         return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
     particles = is_particles(frame)
     return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
             "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
-            "particles": particles, "nan": int(len(data) - np.isfinite(data).sum()),
+            "particles": particles, "plate": plate, "nan": int(len(data) - np.isfinite(data).sum()),
             "plane": flat and (particles or plane_cells.supported(frame))}
+
+
+def held(frame):
+    """Corners of a plate behind the face of a body at which points were held while others moved; None when
+    there is no such face. Corner 4 i + 2 j + k: ends i, j, k along x, y, z."""
+    import numpy as np
+    moved = frame["fields"].get("displacement")
+    if moved is None or not np.abs(moved).max() > 0:
+        return None
+    points = (frame["points"] - moved)[(np.abs(moved) <= 1e-12 * np.abs(moved).max()).all(axis=1)]
+    if len(points) < 3:
+        return None
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = (high - low).max()
+    thin = np.flatnonzero(high - low < 1e-6 * size)
+    if len(thin) != 1:
+        return None
+    across = thin[0]
+    whole = (frame["points"] - moved).mean(axis=0)
+    grown = np.where(np.arange(3) == across, 0.0, 0.22 * size)
+    low, high = low - grown, high + grown
+    if whole[across] > low[across]:
+        low[across] -= 0.1 * size
+    else:
+        high[across] += 0.1 * size
+    ends = np.array([low, high])
+    return [[float(ends[i, 0]), float(ends[j, 1]), float(ends[k, 2])] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
 
 
 def view_axes(flat):

@@ -1,12 +1,9 @@
-"""Time series from the runs' history.csv."""
+"""Time series from the runs' history.csv: the columns, read."""
 
 import csv
 
-from .balance import broken
-from .digits import exact
 from .loading import InputError, number
 
-MOST_CURVES = 12  # beyond that only the finest level of each case is drawn
 MOST_POINTS = 600  # of a drawn curve; see thinned()
 
 
@@ -82,7 +79,8 @@ def _read(study, row, column, against=None):
     return [(x, v) for x, v in zip(*found) if number(x) is not None and number(v) is not None]
 
 
-def _series(study, row, column):
+def series_of(study, row, column):
+    """(times, values) of a column, thinned; None when the run has no such column."""
     finite = _read(study, row, column)
     return thinned([p[0] for p in finite], [p[1] for p in finite]) if finite else None
 
@@ -96,28 +94,3 @@ def pair(study, row, x, y, most):
     step = max(1, -(-len(finite) // most))
     kept = finite[::step] + ([finite[-1]] if (len(finite) - 1) % step else [])
     return [p[0] for p in kept], [p[1] for p in kept]
-
-
-def history_curves(study, cases, plot):
-    """(curves, note): one a case and level, first seed; or (text, "") when there are none."""
-    wanted = number(plot.get("resolution"))
-    picked = [(case, level) for case in cases for level in case.levels
-              if wanted is None or level.resolution == wanted]
-    note = ""
-    if len(picked) > MOST_CURVES:
-        picked = [(case, case.levels[-1]) for case in cases]
-        note = "Finest level of each case."
-    curves = []
-    for case, level in picked:
-        rank = case.levels[::-1].index(level)  # 0 for the finest
-        row, series = next(((r, s) for r in level.rows if (s := _series(study, r, plot["quantity"]))),
-                           (None, None))
-        if series:
-            several = len({id(l) for c, l in picked if c is case}) > 1
-            label = f"{case.label}, L/{exact(level.resolution)}" if several else case.label
-            curves.append({"case": case.index, "method": case.method, "style": case.style,
-                           "label": label, "x": series[0], "y": series[1], "rank": rank,
-                           "low": None, "high": None, "slope": None, "broken": [broken(row)], "row": row})
-    if not curves:
-        return f"no history.csv of this report has the column {plot['quantity']}", ""
-    return curves, note

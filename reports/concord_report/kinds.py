@@ -53,6 +53,10 @@ def scaled(curves, along, unit):
     return [{**c, along: [v * factor for v in c[along]]} for c in curves], unit
 
 
+def times(curves, along, factor):
+    return [{**c, along: [v * factor for v in c[along]]} for c in curves]
+
+
 def is_static(row):
     """True for a run of a static solver: its "time" is the load parameter. Rows may say so
     (`static`); a static run has an end and no time step."""

@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import balance, claims, histories, outputs, pictures, plots, quantities, tables
+from . import balance, captions, claims, histories, outputs, pictures, plots, quantities, tables
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
 from .palette import css_variables, method_name, swatch
@@ -42,35 +42,50 @@ def _plots(study, cases, store, warnings):
 
 
 def _pictures(jobs, name):
-    """Pictures by shared scale, each group with its colour bar; those that are missing apart."""
+    """Pictures by shared scale, each group with its colour bar; those that are missing apart, but where
+    they would leave a hole in a table of instants."""
     groups, missing = {}, []
     for job in jobs:
         if "missing" in job:
-            missing.append({"label": job.get("label") or name, "why": job["missing"]})
-            continue
-        group = groups.setdefault(job["group"], {"jobs": [], "bar": pictures.bar(job), "whole": job["whole"]})
+            job["group"] = next((k for k, g in groups.items() if k[0] == id(job["whole"])), None) or \
+                next((j["group"] for j in jobs if "missing" not in j and j["whole"] is job["whole"]), None)
+            if job["group"] is None or "instant" not in job["picture"]:
+                missing.append({"label": job.get("label") or name, "why": job["missing"]})
+                continue
+        group = groups.setdefault(job["group"], {"jobs": [], "whole": job["whole"]})
         group["jobs"].append(job)
     return [_group(g) for g in groups.values()], missing
 
 
 def _group(group):
     """One colour bar and its pictures. What all panels of a figure have in common is said once."""
-    jobs, bar, whole = group["jobs"], group["bar"], group["whole"]
-    told = [pictures.caption(job) for job in jobs]
-    common = [p for p in told[0][1] if all(p in parts for _, parts in told)] if whole and len(jobs) > 1 else []
-    views = []
-    for job, (case, parts) in zip(jobs, told):
-        parts = [p.replace(" ", "\u00a0") if len(p) < 20 else p for p in parts if p not in common]
-        views.append({
-            "uri": pictures.data_uri(job), "width": job["width"], "height": job["height"],
-            "caption": variant_text(job["picture"].get("caption") or ""), "parts": parts,
-            "swatch": swatch(case.method, case.style) if whole is None else "",
-            "alt": f"{case.label}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
-                   f"{bar['unit']}".strip()})
-    columns = pictures.columns(whole, len(jobs)) if whole else 0
-    return {"bar": bar, "pictures": views, "columns": columns, "title": variant_text((whole or {}).get("caption") or ""),
-            "common": [*common, pictures.extent(jobs[0], len(jobs))] if whole else [],
-            "panel_width": pictures.panel_width(jobs[0], -(-len(jobs) // (columns or 1)))}
+    jobs, whole = group["jobs"], group["whole"]
+    drawn = [job for job in jobs if "missing" not in job]
+    bar = captions.bar(drawn[0])
+    told = [captions.caption(job)[1] for job in drawn]
+    common = [p for p in told[0] if all(p in parts for parts in told)] if whole and len(drawn) > 1 else []
+    columns = captions.columns(whole, len(jobs)) if whole else 0
+    view = {"bar": bar, "pictures": [_view(job, whole, bar, common) for job in jobs], "columns": columns,
+            "title": variant_text((whole or {}).get("caption") or ""),
+            "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
+            "panel_width": captions.panel_width(drawn[0], -(-len(jobs) // (columns or 1))),
+            "triad": [] if drawn[0]["view"]["flat"] else captions.triad(), "note": captions.note(drawn)}
+    for k, one in enumerate(view["pictures"] if whole and whole.get("times") else []):
+        one["instant"] = "" if k % columns else captions.time_text(whole["times"][k // columns], drawn[0]["row"])
+    return view
+
+
+def _view(job, whole, bar, common):
+    caption = variant_text(job["picture"].get("caption") or "")
+    if "missing" in job:
+        return {"why": job["missing"], "caption": caption, "instant": ""}
+    case, parts = captions.caption(job)
+    parts = [p.replace(" ", "\u00a0") if len(p) < 20 else p for p in parts if p not in common]
+    at = f", {captions.time_text(job['time'], job['row'])}" if "instant" in job["picture"] else ""
+    return {"uri": pictures.data_uri(job), "width": job["width"], "height": job["height"], "instant": "",
+            "caption": caption, "parts": parts, "swatch": swatch(case.method, case.style) if whole is None else "",
+            "alt": f"{case.label}{at}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
+                   f"{bar['unit']}".strip()}
 
 
 def _tables(study, cases):

@@ -23,6 +23,9 @@ ROLES = {
     "paper": ("--panel", "#fefefe"),
 }
 
+COLUMNS = ("delaunay", "tlsph", "voronoi", "cbm", "sph", "", "calculix")  # whose hues several columns of a run take
+BALANCES = "fem"  # and of the column that ought to stay as it is
+
 MARKERS = ("o", "s", "^", "D", "v", "p", "X", "P", "h", "<")
 DASHES = ("", "6 2.5", "2 2", "7 2 1.5 2", "10 3", "4 1.5 1.5 1.5 1.5 1.5")
 

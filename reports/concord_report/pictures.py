@@ -3,7 +3,6 @@ process of its own (VTK needs an X display), plane bodies by matplotlib, and cac
 
 import base64
 import json
-import math
 import os
 import shutil
 import subprocess
@@ -12,30 +11,31 @@ import tempfile
 from pathlib import Path
 
 from . import cache, frames
-from .balance import SIGN, WORDS, broken
 from .cases import chosen
-from .digits import engineering, exact, pretty, ticks
-from .kinds import is_static
 from .loading import number
 from .palette import RED_BLUE, VIRIDIS
-from .quantities import field_name
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
-CODE = ("render", "render_vtk", "render_plane", "render_scatter", "plane_cells", "frames", "palette")
+FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
+CODE = ("render", "render_vtk", "render_plane", "render_scatter", "plane_cells", "solid_cells", "frames", "palette")
 LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 
 
 def entries(study):
     """The study's pictures one by one: [(entry, None)], and for each panel of a [[picture]] with panels
-    (entry with the panel's keys over the picture's, the picture as it stands)."""
+    or instants (entry with the panel's keys over the picture's, the picture as it stands); an entry's
+    `instant` is the number of its row."""
     out = []
     for picture in study.listed("pictures"):
-        panels = picture.get("panels")
-        if not panels:
+        panels, times = picture.get("panels"), picture.get("times")
+        if not panels and not times:
             out.append((picture, None))
             continue
-        shared = {k: v for k, v in picture.items() if k not in ("panels", "caption")}
-        out += [({**shared, **panel}, picture) for panel in panels]
+        shared = {k: v for k, v in picture.items() if k not in ("panels", "caption", "times")}
+        panels = [{**shared, **panel} for panel in panels or [{}]]
+        for instant, time in enumerate(times or [None]):
+            at = {} if time is None else {"time": time, "instant": instant}
+            out += [({**panel, **at}, picture) for panel in panels]
     return out
 
 
@@ -128,11 +128,25 @@ def _share_scales(jobs):
 
 
 def _view(job, alike, flat):
-    """What is seen: the extent of all bodies, or the crop."""
+    """What is seen: the extent of all bodies, or the crop. Where the bodies of a figure travel, the rows
+    of instants each have their own middle, and the largest of their extents."""
     room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
-    seen = [j["seen_flat" if flat else "seen"] for j in alike]
-    view = {"flat": flat, "low": [min(s[0][k] for s in seen) - room for k in range(3)],
-            "high": [max(s[1][k] for s in seen) + room for k in range(3)]}
+    def extent(jobs):
+        seen = [j["seen_flat" if flat else "seen"] for j in jobs]
+        return ([min(s[0][k] for s in seen) - room for k in range(3)],
+                [max(s[1][k] for s in seen) + room for k in range(3)])
+    low, high = extent(alike)
+    rows = {}
+    for other in alike:
+        rows.setdefault(other["picture"].get("instant"), []).append(other)
+    ends = {row: extent(jobs) for row, jobs in rows.items()}
+    size = [max(e[1][k] - e[0][k] for e in ends.values()) for k in range(3)]
+    job["followed"] = any(high[k] - low[k] > FOLLOW_FROM * max(size[:2]) for k in (0, 1)) and not job["crop"]
+    if job["followed"]:
+        a, b = ends[job["picture"].get("instant")]
+        low = [(a[k] + b[k] - size[k]) / 2 for k in range(3)]
+        high = [(a[k] + b[k] + size[k]) / 2 for k in range(3)]
+    view = {"flat": flat, "low": low, "high": high}
     for k, along in enumerate("xy"):
         if flat and (job["crop"] or {}).get(along):
             view["low"][k], view["high"][k] = map(float, job["crop"][along])
@@ -160,7 +174,7 @@ def _limits(low, high, wanted=None, difference=False):
 def _render_job(job):
     stops = RED_BLUE if job["diverging"] else VIRIDIS
     more = {"long": job["long"]} if job["plane"] else {}
-    return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat")} \
+    return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat", "plate")} \
         | {"stops": stops, **more}
 
 
@@ -228,82 +242,3 @@ def _attempts(wanted, ways, store, warnings):
 
 def data_uri(job):
     return f"data:image/{job['format']};base64,{base64.b64encode(job['image']).decode()}"
-
-
-def caption(job):
-    """The caption's factual half: method, spacing, time, exaggeration, how large the field is."""
-    case, parts = job["case"], [job["case"].label]
-    if job["h"]:
-        parts.append(f"h = {exact(job['h'])} m" if job["h"] >= 0.01 else f"h = {exact(job['h'] * 1e3, 3)} mm")
-    if job["time"]:
-        factor, unit = (1, "") if is_static(job["row"]) else engineering(job["time"], "s")
-        parts.append(f"t = {exact(job['time'] * factor)} {unit}".strip())
-    if job["scale"] != 1:
-        parts.append(f"displacement ×{exact(job['scale'])}")
-    if job["whole"] is not None:
-        factor, unit = engineering(max(map(abs, job["limits"])), field_name(job["color"])[1])
-        parts.append(f"{ends(*(v * factor for v in job['range']))} {unit}".strip())
-    if job.get("how") == "scatter":
-        parts.append("plain scatter plot, because VTK or xvfb is not installed")
-    if job["nan"]:
-        parts.append(f"{job['nan']} points without a value in grey")
-    if broken(job["row"]):
-        parts.append(f"{SIGN} {WORDS}")
-    return case, parts
-
-
-def bar(job):
-    """The colour bar of a job: name, unit, stops and ticks at fractions of its length."""
-    name, unit = field_name(job["color"])
-    low, high = job["limits"]
-    factor, unit = engineering(max(abs(low), abs(high)), unit)
-    scale_text = ""
-    if not unit and 0 < max(abs(low), abs(high)) < 1e-2:
-        power = math.floor(math.log10(max(abs(low), abs(high))))
-        factor, scale_text = 10.0 ** -power, pretty(10.0 ** power, 1).removeprefix("1×")
-    marks = []
-    for value in ticks(low * factor, high * factor, 5):
-        marks.append((round((value - low * factor) / ((high - low) * factor), 4),
-                      exact(float(f"{value:.6g}") + 0.0)))
-    return {"name": name, "unit": unit or scale_text, "marks": marks,
-            "stops": RED_BLUE if job["diverging"] else VIRIDIS,
-            "low": pretty(low * factor), "high": pretty(high * factor), "beyond": job["beyond"]}
-
-
-def ends(low, high):
-    """"0.018 to 0.673": both with the decimals of the larger one, which has three digits."""
-    size = max(abs(low), abs(high))
-    if not 1e-3 <= size < 1e5:
-        return f"{pretty(low)} to {pretty(high)}"
-    places = max(0, 2 - math.floor(math.log10(size)))
-    def text(v): return f"{v:.{places}f}".replace("-", "−") if round(v, places) else "0"
-    return f"{text(low)} to {text(high)}"
-
-
-def extent(job, count):
-    """How large a part of space each of the panels shows."""
-    if not job["plane"]:
-        return ""
-    wide, high = (job["view"]["high"][k] - job["view"]["low"][k] for k in (0, 1))
-    factor, unit = (1e3, "mm") if max(wide, high) < 1 else (1, "m")
-    return f"{'each picture' if count > 1 else 'picture'} {exact(wide * factor, 3)} {unit} × {exact(high * factor, 3)} {unit}"
-
-
-WIDEST, TALLEST = 330, 460  # of a panel on the page [CSS pixels]
-
-
-def panel_width(job, rows):
-    """How wide a panel stands on the page at most: tall bodies take less, rows of them still less."""
-    tall = TALLEST if rows == 1 else 0.75 * TALLEST
-    return round(min(WIDEST, max(150, tall * job["width"] / job["height"])))
-
-
-def columns(whole, count):
-    """How many panels stand side by side: the author's number; one row up to four, else whole rows of
-    three or four where there are."""
-    wanted = number(whole.get("columns"))
-    if wanted and wanted >= 1:
-        return min(int(wanted), count)
-    if count <= 4:
-        return count
-    return next((n for n in (3, 4, 5) if count % n == 0), 4)

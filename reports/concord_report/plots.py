@@ -1,20 +1,20 @@
 """What a study's plots show, as plain data: the drawing itself (draw.py) is cached by it. Here the
-plots over spacing, cost and time; sweeps.py and curves.py have the others."""
+plots over spacing and cost; sweeps.py, curves.py and timelines.py have the others."""
 
 import json
 
 from . import balance, cache
 from . import curves as _curves  # noqa: F401  (registers its kinds)
 from . import sweeps as _sweeps  # noqa: F401
+from . import timelines as _timelines  # noqa: F401
 from .cases import chosen, fit_of
 from .digits import pretty
-from .histories import history_curves
-from .kinds import KINDS, capital, curve_of, kind, scaled, setting_of, time_name
+from .kinds import KINDS, capital, curve_of, kind, setting_of, times
 from .loading import dig, number
 from .palette import look
 from .quantities import axis, name_and_unit
 
-__all__ = ["convergence", "cost", "drawn", "history", "plot_specs", "setting_of"]
+__all__ = ["convergence", "cost", "drawn", "plot_specs", "setting_of"]
 DIRECT = 9  # at most so many curves are labelled at their ends; the page's key names all
 MODULES = ("draw", "draw_labels", "draw_triangles", "draw_map", "draw_inset", "svg", "palette", "digits")
 
@@ -48,7 +48,7 @@ def convergence(study, cases, plot):
     wanted = number(plot.get("slope"))
     unit = "m"
     if not number(plot.get("x_scale")) and max(x for c in curves for x in c["x"]) < 0.01:
-        curves, unit = _times(curves, "x", 1e3), "mm"
+        curves, unit = times(curves, "x", 1e3), "mm"
     return {"scales": ["log", "log"], "xlabel": f"mean spacing h [{unit}]", "ylabel": axis(plot["quantity"]),
             "curves": curves, "title": plot.get("title") or f"{capital(name)} against spacing",
             "note": "Fitted orders in brackets." if orders and len(curves) <= DIRECT else "",
@@ -77,42 +77,12 @@ def cost(study, cases, plot):
             "triangles": [], "alt": f"Log-log plot of {name} against run time. Finest: {best}."}
 
 
-@kind("history")
-def history(study, cases, plot):
-    column = plot["quantity"]
-    curves, note = history_curves(study, chosen(cases, plot), plot)
-    if isinstance(curves, str):
-        return curves
-    name, unit = name_and_unit(column)
-    rows = [c.pop("row") for c in curves]
-    over = time_name(rows)
-    times = "s" if over == "time" else "s for explicit runs" if "time" in over else ""
-    if number(plot.get("x_scale")):
-        curves, times = _times(curves, "x", plot["x_scale"]), ""
-    elif times == "s":
-        curves, times = scaled(curves, "x", "s")
-    if number(plot.get("y_scale")):
-        curves, unit = _times(curves, "y", plot["y_scale"]), ""
-    else:
-        curves, unit = scaled(curves, "y", unit)
-    ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in curves)
-    ends += f" {unit}" if unit else ""
-    return {"scales": ["linear", "linear"], "xlabel": f"{over} [{times}]" if times else over,
-            "ylabel": f"{name} [{unit}]" if unit else name,
-            "curves": curves, "title": plot.get("title") or f"{capital(name)} over {over}",
-            "note": note, "triangles": [], "alt": f"Plot of {name} over {over}. Ranges: {ends}."}
-
-
-def _times(curves, along, factor):
-    return [{**c, along: [v * factor for v in c[along]]} for c in curves]
-
-
 def plot_specs(study, cases):
     """[(plot, specification or text)] in the study's order. An unknown kind is told, not hidden."""
     out = []
     for plot in study.listed("plots"):
         make = KINDS.get(plot.get("kind"))
-        if make is None or not (plot.get("quantity") or plot.get("y")):
+        if make is None or not any(plot.get(key) for key in ("quantity", "y", "columns")):
             out.append((plot, f"plots of kind {plot.get('kind')!r} are unknown here or name no quantity; "
                               "known: " + ", ".join(sorted(KINDS))))
             continue
@@ -127,7 +97,7 @@ def plot_specs(study, cases):
 
 def drawn(spec, ident, store):
     """The SVG of a specification, from the cache where it is there."""
-    labelled = len(spec["curves"]) <= DIRECT or any(c["case"] < 0 for c in spec["curves"])
+    labelled = len(spec["curves"]) <= DIRECT or spec.get("legend") or any(c["case"] < 0 for c in spec["curves"])
     spec = {**spec, "ident": ident, "labelled": labelled}
     looks = [look(c["method"]) for c in spec["curves"]]
     key = cache.digest(spec, looks, cache.source_digest(*MODULES))

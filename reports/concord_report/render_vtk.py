@@ -1,17 +1,17 @@
-"""Draws one frame with VTK: particles as shaded spheres, meshes as their surface with edges."""
+"""Draws one frame with VTK: meshes as their surface with edges; bodies of particles as their surface too, one
+colour a particle, so that methods compare; particles outside such a body as shaded spheres."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkLookupTable, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkFiltersExtraction import vtkExtractEdges
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkLightKit, vtkPolyDataMapper, vtkRenderer,
                                          vtkRenderWindow, vtkWindowToImageFilter)
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
-from . import frames
+from . import frames, solid_cells
 
 LONG = 1760  # pixels of the drawing's width; the picture has half of it: that smooths its edges
 EDGES_UP_TO = 60000  # cells; a finer mesh's edges would only darken the picture
@@ -20,9 +20,7 @@ GREY = (0.62, 0.62, 0.62)
 
 def _grid(frame, positions, data):
     grid = vtkUnstructuredGrid()
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions, float), deep=True))
-    grid.SetPoints(points)
+    grid.SetPoints(_points(positions))
     cells = vtkCellArray()
     cells.SetData(numpy_to_vtkIdTypeArray(np.ascontiguousarray(frame["offsets"], np.int64), deep=True),
                   numpy_to_vtkIdTypeArray(np.ascontiguousarray(frame["connectivity"], np.int64), deep=True))
@@ -65,14 +63,9 @@ def _spheres(positions, data, job):
     full = spread[spread > 1e-9 * spread.max()]
     diameter = job["h"] or (np.prod(full) / max(1, len(positions))) ** (1 / max(1, len(full)))
     cloud = vtkPolyData()
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions, float), deep=True))
-    cloud.SetPoints(points)
+    cloud.SetPoints(_points(positions))
     _attach(cloud, data)
-    vertices = vtkCellArray()
-    vertices.SetData(numpy_to_vtkIdTypeArray(np.arange(len(positions) + 1), deep=True),
-                     numpy_to_vtkIdTypeArray(np.arange(len(positions)), deep=True))
-    cloud.SetVerts(vertices)
+    cloud.SetVerts(_cells(np.arange(len(positions))[:, None]))
     mapper = vtkOpenGLSphereMapper()  # ray-cast spheres: two triangles each
     mapper.SetInputData(cloud)
     mapper.SetRadius(0.5 * diameter)
@@ -81,6 +74,90 @@ def _spheres(positions, data, job):
     actor = vtkActor()
     actor.SetMapper(mapper)
     return [actor]
+
+
+def _body(positions, reference, data, job):
+    """The surface of a body of particles, each with its share of it; spheres for those that belong to none."""
+    triangles, alone = solid_cells.surface(reference, job["h"])
+    if not len(triangles):
+        return _spheres(positions, data, job)
+    points, quads, owner = solid_cells.shares(triangles, reference, positions)
+    skin = _polygons(points, quads)
+    colours = numpy_to_vtk(np.ascontiguousarray(data[owner]), deep=True)
+    colours.SetName("color")
+    skin.GetCellData().SetScalars(colours)
+    actor, mapper = _lit(skin, job)
+    mapper.SetScalarModeToUseCellData()
+    mapper.SetInterpolateScalarsBeforeMapping(False)
+    rim = _lines(points[quads[:, [1, 2, 3]]].reshape(-1, 3), np.arange(3 * len(quads)).reshape(-1, 3), job)
+    rim.GetProperty().SetOpacity(0.16)
+    return [actor, rim, *(_spheres(positions[alone], data[alone], job) if len(alone) else ())]
+
+
+def _polygons(points, cells):
+    """Polygons with equally many corners."""
+    skin = vtkPolyData()
+    skin.SetPoints(_points(points))
+    skin.SetPolys(_cells(cells))
+    return skin
+
+
+def _points(positions):
+    points = vtkPoints()
+    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions, float), deep=True))
+    return points
+
+
+def _cells(cells):
+    made = vtkCellArray()
+    made.SetData(numpy_to_vtkIdTypeArray(np.arange(len(cells) + 1) * cells.shape[1], deep=True),
+                 numpy_to_vtkIdTypeArray(np.ascontiguousarray(cells.reshape(-1), np.int64), deep=True))
+    return made
+
+
+def _lit(skin, job):
+    """(actor, mapper) of polygons that are smoothly shaded but at sharp edges."""
+    normals = vtkPolyDataNormals()
+    normals.SetInputData(skin)
+    normals.SetFeatureAngle(35)
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(normals.GetOutputPort())
+    _coloured(mapper, job)
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    return actor, mapper
+
+
+def _lines(points, lines, job):
+    """Thin dark lines, a little nearer to the eye than they are."""
+    view = job["view"]
+    reach = max(h - l for l, h in zip(view["low"], view["high"]))
+    drawing = vtkPolyData()
+    drawing.SetPoints(_points(points + 0.002 * reach * frames.view_axes(view["flat"])[2]))
+    drawing.SetLines(_cells(lines))
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(drawing)
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    look = actor.GetProperty()
+    look.SetColor(0.05, 0.06, 0.08)
+    look.SetOpacity(0.35)
+    look.SetLineWidth(2.0)
+    look.LightingOff()
+    return actor
+
+
+def _plate(job):
+    """Where a body is held: a grey plate behind its fixed points."""
+    corners = np.array(job["plate"])
+    faces = np.array([(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputData(_polygons(corners[faces].reshape(-1, 3), np.arange(24).reshape(-1, 4)))
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*GREY)
+    return actor
 
 
 def _surface(frame, positions, data, job):
@@ -101,30 +178,34 @@ def _surface(frame, positions, data, job):
     actor.SetMapper(mapper)
     actors = [actor]
     if len(frame["types"]) <= EDGES_UP_TO:
-        actors.append(_edges(frame, positions, data, job))
+        actors += _edges(frame, positions, job)
     return actors
 
 
-def _edges(frame, positions, data, job):
-    """The straight edges of the cells on the surface, a little nearer to the eye than it."""
-    view = job["view"]
-    reach = max(h - l for l, h in zip(view["low"], view["high"]))
-    positions = positions + 0.004 * reach * frames.view_axes(view["flat"])[2]
-    surface = vtkDataSetSurfaceFilter()
-    surface.SetInputData(_grid(frame, positions, data))
-    surface.SetNonlinearSubdivisionLevel(0)
-    edges = vtkExtractEdges()
-    edges.SetInputConnection(surface.GetOutputPort())
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(edges.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(0.05, 0.06, 0.08)
-    actor.GetProperty().SetOpacity(0.35)
-    actor.GetProperty().SetLineWidth(2.0)
-    actor.GetProperty().LightingOff()
-    return actor
+TETRAHEDRON = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # edges in VTK's order, as are the nodes on them
+HEXAHEDRON = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+CELLS = {10: (4, TETRAHEDRON), 24: (10, TETRAHEDRON), 12: (8, HEXAHEDRON), 25: (20, HEXAHEDRON), 29: (27, HEXAHEDRON)}
+PIECES = 6  # of a curved edge
+
+
+def _edges(frame, positions, job):
+    """The cells' edges, curved where they are; inner ones are hidden by the surface."""
+    actors = []
+    for kind in sorted(set(np.unique(frame["types"]).tolist()) & set(CELLS)):
+        nodes, ends = CELLS[kind]
+        starts = np.asarray(frame["offsets"])[:-1][frame["types"] == kind]
+        cells = frame["connectivity"][starts[:, None] + np.arange(nodes)]
+        pairs = np.sort(cells[:, ends].reshape(-1, 2), axis=1)
+        pairs, first = np.unique(pairs, axis=0, return_index=True)
+        corners = max(map(max, ends)) + 1
+        curved = nodes > corners
+        t = np.linspace(0, 1, PIECES + 1) if curved else np.array([0, 1])
+        line = np.einsum("p,ed->epd", 1 - t, positions[pairs[:, 0]]) + np.einsum("p,ed->epd", t, positions[pairs[:, 1]])
+        if curved:  # what the node on the edge is off its middle
+            middle = cells[:, corners:corners + len(ends)].reshape(-1)[first]
+            line += np.einsum("p,ed->epd", 4 * t * (1 - t), positions[middle] - positions[pairs].mean(axis=1))
+        actors.append(_lines(line.reshape(-1, 3), np.arange(len(line) * len(t)).reshape(-1, len(t)), job))
+    return actors
 
 
 def _shade(actor, flat):
@@ -174,20 +255,26 @@ def _lights(renderer):
 
 def draw(frame, job):
     """RGBA pixels of the job's frame on a transparent ground."""
-    positions, _ = frames.deformed(frame, job["scale"])
+    positions, reference = frames.deformed(frame, job["scale"])
     data = frames.values(frame, job["color"])
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.SetBackgroundAlpha(0)
     if job["particles"]:
         good = np.isfinite(positions).all(axis=1)
-        actors = _spheres(positions[good], data[good], job)
+        solid = reference is not None and job["h"] and not job["view"]["flat"]
+        actors = _body(positions[good], reference[good], data[good], job) if solid else \
+            _spheres(positions[good], data[good], job)
     else:
         actors = _surface(frame, positions, data, job)
     for position, actor in enumerate(actors):
         if position == 0:
             _shade(actor, job["view"]["flat"])
         renderer.AddActor(actor)
+    if job.get("plate"):
+        actors = [_plate(job)]
+        _shade(actors[0], False)
+        renderer.AddActor(actors[0])
     _lights(renderer)
     window = vtkRenderWindow()
     window.SetOffScreenRendering(True)

@@ -15,7 +15,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent.parent / "reports")]
 import fixture  # noqa: E402  (needs the paths above)
 import fixture_bar  # noqa: E402
 import numpy as np  # noqa: E402
-from concord_report import (balance, cache, cases, draw, frames, kinds, pictures, plane_cells, plots,  # noqa: E402
+from concord_report import (balance, cache, captions, cases, draw, frames, kinds, pictures, plane_cells, plots,  # noqa: E402
                             quantities, tables)
 from concord_report.loading import Study  # noqa: E402
 
@@ -233,9 +233,9 @@ class Panels(unittest.TestCase):
         self.assertIn("no difference.hdf", " ".join(self.warnings))
 
     def test_words(self):
-        self.assertEqual(pictures.ends(2.8e-8, 0.55), "0 to 0.550")
-        self.assertEqual(pictures.ends(-0.0161, 0.0165), "−0.0161 to 0.0165")
-        self.assertEqual([pictures.columns({}, n) for n in (2, 4, 6, 8, 9, 7)], [2, 4, 3, 4, 3, 4])
+        self.assertEqual(captions.ends(2.8e-8, 0.55), "0 to 0.550")
+        self.assertEqual(captions.ends(-0.0161, 0.0165), "−0.0161 to 0.0165")
+        self.assertEqual([captions.columns({}, n) for n in (2, 4, 6, 8, 9, 7)], [2, 4, 3, 4, 3, 4])
         self.assertEqual(pictures._limits(0.1, 0.4, [0, 1]), ([0, 1], False))
         self.assertEqual(pictures._limits(-0.1, 0.4, None, True), ([-0.4, 0.4], True))
 

@@ -1,0 +1,140 @@
+"""Plots of columns of history.csv over time: one of many runs, or several of a few."""
+
+from . import curves as lines
+from .balance import broken
+from .cases import chosen, variant_text
+from .digits import pretty
+from .histories import series_of
+from .kinds import capital, kind, scaled, time_name, times
+from .loading import number
+from .palette import BALANCES, COLUMNS, DASHES
+from .quantities import name_and_unit
+
+MOST_RUNS = 12  # of one column; beyond that only the finest level of each case is drawn
+MEANT = {"J": "energy", "kg m/s": "momentum", "kg m²/s": "angular momentum", "N": "force", "m": "length"}
+
+
+@kind("history")
+def history(study, cases, plot):
+    columns = plot.get("columns") or [plot["quantity"]]
+    units = {name_and_unit(column)[1] for column in columns}
+    if len(units) > 1:
+        return f"the columns {', '.join(columns)} have several units ({', '.join(sorted(units))})"
+    runs, note = _picked(chosen(cases, plot), plot)
+    several = len(columns) > 1
+    found = _several_columns(study, runs, columns) if several else _one_column(study, runs, columns[0])
+    missing = [c for c in columns if not any(line["column"] == c for line in found)]
+    found += [line for entry in _entries(plot) for line in _compared(study, cases, entry, columns)]
+    if not found:
+        return f"no history.csv of this report has the column {' or '.join(columns)}"
+    if plot.get("change"):
+        found = [{**c, "y": [v - c["y"][0] for v in c["y"]]} for c in found]
+    rows = [c.pop("row") for c in found]
+    if any(c.get("rank") for c in found):
+        note = f"{note} The stronger the line, the finer the run.".strip()
+    if missing:
+        note = f"{note} No run has {' or '.join(name_and_unit(c)[0] for c in missing)}.".strip()
+    return _axes(plot, found, rows, columns, units.pop()) | {
+        "legend": several or len(found) > 4 or any("dash" in c for c in found), "note": note}
+
+
+def _axes(plot, found, rows, columns, unit):
+    over = time_name(rows)
+    seconds = "s" if over == "time" else "s for explicit runs" if "time" in over else ""
+    if number(plot.get("x_scale")):
+        found, seconds = times(found, "x", plot["x_scale"]), ""
+    elif seconds == "s":
+        found, seconds = scaled(found, "x", "s")
+    if number(plot.get("y_scale")):
+        found, unit = times(found, "y", plot["y_scale"]), ""
+    else:
+        found, unit = scaled(found, "y", unit)
+    name = ("change of " if plot.get("change") else "") + _shared_name(columns)
+    ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in found)
+    ends += f" {unit}" if unit else ""
+    return {"scales": ["linear", "linear"], "xlabel": f"{over} [{seconds}]" if seconds else over,
+            "ylabel": f"{name} [{unit}]" if unit else name, "triangles": [],
+            "curves": [{k: v for k, v in c.items() if k != "column"} for c in found],
+            "title": plot.get("title") or f"{capital(name)} over {over}",
+            "alt": f"Plot of {name} over {over}. Ranges: {ends}."}
+
+
+def _shared_name(columns):
+    """"energy" for the kinetic and the internal one, "linear momentum" for its components."""
+    names = [name_and_unit(c)[0].split() for c in columns]
+    if len(names) == 1:
+        return " ".join(names[0])
+    shortest = min(map(len, names))
+    for size in range(shortest, 0, -1):
+        for part in (slice(None, size), slice(-size, None)):
+            if len({tuple(n[part]) for n in names}) == 1:
+                return " ".join(names[0][part])
+    return MEANT.get(name_and_unit(columns[0])[1], "value")
+
+
+def _picked(cases, plot):
+    """([(case, level, number of the level's rank from the finest, how many of the case)], note)."""
+    wanted = plot.get("resolutions") or ([plot["resolution"]] if number(plot.get("resolution")) else [])
+    picked = [(case, [l for l in case.levels[::-1] if not wanted or any(lines.near(l.resolution, w) for w in wanted)])
+              for case in cases]
+    note = ""
+    if sum(len(levels) for _, levels in picked) > MOST_RUNS or len(plot.get("columns") or []) > 1 and not wanted:
+        if any(len(levels) > 1 for _, levels in picked):
+            note = "Finest level of each case."
+        picked = [(case, levels[:1]) for case, levels in picked]
+    return [(case, level, rank, len(levels)) for case, levels in picked for rank, level in enumerate(levels)], note
+
+
+def _line(study, case, level, column, **more):
+    """The column of the level's first run that has it, or None."""
+    row, series = next(((r, s) for r in level.rows if (s := series_of(study, r, column))), (None, None))
+    if not series:
+        return None
+    return {"case": case.index, "method": case.method, "style": case.style, "x": series[0], "y": series[1],
+            "low": None, "high": None, "slope": None, "broken": [broken(row)], "row": row, "column": column, **more}
+
+
+def _one_column(study, runs, column):
+    """Hue by method; dashes by variant, or by level where there is but one case."""
+    alone = len({case.index for case, *_ in runs}) == 1
+    out = []
+    for case, level, rank, count in runs:
+        more = {"dash": rank, "fade": 1 + 0.15 * rank} if alone and count > 1 else {}
+        line = _line(study, case, level, column, rank=rank, label=_run(case, level, count > 1), **more)
+        out += [line] if line else []
+    return out
+
+
+def _run(case, level, several):
+    row = next((r for r in level.rows if not r.get("error")), level.rows[0])
+    return lines.run_label(case, level, row, several)
+
+
+def _several_columns(study, runs, columns):
+    """Hue by column, dashes by run."""
+    out, hues = [], {}
+    for column in columns:
+        zero = column.startswith("energy_balance")
+        hues[column] = BALANCES if zero else COLUMNS[len([h for h in hues.values() if h != BALANCES]) % len(COLUMNS)]
+    for number_, (case, level, _, count) in enumerate(runs):
+        for column in columns:
+            label = name_and_unit(column)[0]
+            label = f"{label}, {_run(case, level, count > 1)}" if len(runs) > 1 else label
+            line = _line(study, case, level, column, label=label, hue=hues[column], dash=number_ % len(DASHES))
+            out += [{**line, "case": -1 - len(out)}] if line else []
+    return out
+
+
+def _entries(plot):
+    wanted = plot.get("baseline") or []
+    return [wanted] if isinstance(wanted, dict) else wanted
+
+
+def _compared(study, cases, entry, columns):
+    """Runs to compare with: the finest of each case, or the one at the entry's resolution."""
+    out = []
+    for case, level, _, _ in _picked(chosen(cases, entry), {**entry, "columns": columns * 2})[0]:
+        label = variant_text(entry.get("label")) or case.label
+        line = _line(study, case, level, entry.get("quantity") or columns[0], label=label, reference=True, dash=0)
+        out += [line] if line else []
+    return out
