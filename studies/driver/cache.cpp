@@ -62,31 +62,33 @@ fs::path scene_library() {
   return fs::canonical(info.dli_fname);
 }
 
-/// Files that compute a method.
-std::vector<fs::path> binaries_of(const std::string& method) {
-  const fs::path library = scene_library();
+/// Files that compute a method, or probe it: probes are the program's.
+std::vector<fs::path> binaries_of(const std::string& method, bool probe) {
+  const fs::path library = scene_library(), program = "/proc/self/exe";
   const fs::path module = library.parent_path() / "libconcord_fem.so";
   const bool own_module = method == "fem" && fs::exists(module);
-  return {library, own_module ? module : fs::path("/proc/self/exe")};
+  if (own_module && probe) return {library, module, program};
+  return {library, own_module ? module : program};
 }
 
-std::string hash_binaries(const std::string& method) {
+std::string hash_binaries(const std::string& method, bool probe) {
   ContentHash hash;
-  for (const fs::path& file : binaries_of(method)) hash.add_file(file);
+  for (const fs::path& file : binaries_of(method, probe)) hash.add_file(file);
   return hash.digits();
 }
 
 }  // namespace
 
-std::string build_hash(const std::string& method) {
-  static std::map<std::string, std::string> known;  // binaries do not change while we run
-  auto& hash = known[method];
-  if (hash.empty()) hash = hash_binaries(method);
+std::string build_hash(const std::string& method, bool probe) {
+  // Binaries do not change while we run.
+  static std::map<std::pair<std::string, bool>, std::string> known;
+  auto& hash = known[{method, probe}];
+  if (hash.empty()) hash = hash_binaries(method, probe);
   return hash;
 }
 
-bool build_unchanged(const std::string& method) {
-  return hash_binaries(method) == build_hash(method);
+bool build_unchanged(const std::string& method, bool probe) {
+  return hash_binaries(method, probe) == build_hash(method, probe);
 }
 
 std::string cache_key(const scene::Problem& problem, const RunKey& run) {
@@ -96,7 +98,11 @@ std::string cache_key(const scene::Problem& problem, const RunKey& run) {
   for (const auto& [key, value] : run.entry->set) hash.add(key).add(value);
   hash.add(fmt::format("perturb {} resolution {} seed {} frames {} timed {}",
                        run.entry->perturb, run.resolution, run.seed, run.frames, run.timed));
-  hash.add(build_hash(run.entry->method));
+  const bool probe = !run.entry->probe.empty();
+  if (probe) hash.add("probe").add(run.entry->probe);
+  for (const auto& [key, value] : run.entry->options) hash.add(key).add(value);
+  if (run.entry->repeats > 0) hash.add(fmt::format("repeats {}", run.entry->repeats));
+  hash.add(build_hash(run.entry->method, probe));
   return hash.digits();
 }
 

@@ -36,14 +36,16 @@ struct RunKey {
 };
 
 /// Hash of the binaries that compute a method: the program and the scene library; for `fem`,
-/// whose code lives in a module of its own, the module and the scene library.
-std::string build_hash(const std::string& method);
+/// whose code lives in a module of its own, the module and the scene library; for probes of it
+/// all three.
+std::string build_hash(const std::string& method, bool probe = false);
 
 /// False when the binaries have been replaced since build_hash was first asked: what runs now
 /// is not what the key says.
-bool build_unchanged(const std::string& method);
+bool build_unchanged(const std::string& method, bool probe = false);
 
-/// Key of a run: canonical scene text, bytes of the geometry, the run, the binaries.
+/// Key of a run or a probe: canonical scene text, bytes of the geometry, what is asked for, the
+/// binaries.
 std::string cache_key(const scene::Problem& problem, const RunKey& run);
 
 /// Finished runs below one folder, each in a folder named by its key. An entry is complete when

@@ -219,7 +219,8 @@ LoadedReference load(const Study& study, const Comparison& comparison,
 
 std::vector<const Comparison*> comparisons_of(const Study& study, std::size_t case_index,
                                               double resolution, std::uint64_t seed) {
-  std::map<std::string, const Comparison*> found;  // nullptr: a reference of this name
+  if (!study.cases[case_index].probe.empty()) return {};  // no frames
+  std::map<std::string, const Comparison*> found;         // nullptr: a reference of this name
   for (const Comparison& comparison : study.comparisons)
     if (is_reference(study, comparison, case_index, resolution, seed))
       found[comparison.name] = nullptr;

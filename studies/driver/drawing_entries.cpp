@@ -85,8 +85,11 @@ Plot read_plot(StrictTable table) {
                                    {"history", "history"},
                                    {"sweep", "sweep"},
                                    {"curve", "curve"},
-                                   {"map", "map"}});
+                                   {"map", "map"},
+                                   {"work_precision", "work_precision"}});
   plot.title = table.text_or("title", "");
+  plot.note = table.text_or("note", "");
+  if (plot.kind == "work_precision") plot.time = read_work_time(table);
   if (plot.kind == "curve") {
     plot.x = table.text("x");
     plot.y = table.text("y");

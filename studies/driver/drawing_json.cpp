@@ -19,6 +19,7 @@ void put(json& object, const Selector& selector) {
   put(object, "scene", selector.scene);
   put(object, "method", selector.method);
   put(object, "variant", selector.variant);
+  put(object, "probe", selector.probe);
 }
 
 namespace {
@@ -48,6 +49,7 @@ void put_cases(json& object, const Study& study, const Selector& selector) {
   put_expanded(object, "scene", selector.scene, study, selector, &Case::scene);
   put_expanded(object, "method", selector.method, study, selector, &Case::method);
   put_expanded(object, "variant", selector.variant, study, selector, &Case::variant);
+  put_expanded(object, "probe", selector.probe, study, selector, &Case::probe);
 }
 
 void put_range(json& object, const char* key, const std::optional<Range>& range) {
@@ -85,6 +87,8 @@ json plot_json(const Study& study, const Plot& plot) {
   json object{{"kind", plot.kind}};
   put_text(object, "quantity", plot.quantity);
   put_text(object, "title", plot.title);
+  put_text(object, "note", plot.note);
+  if (plot.kind == "work_precision") object["time"] = to_text(plot.time);
   put_text(object, "setting", plot.setting);
   put_text(object, "setting_y", plot.setting_y);
   put_text(object, "x", plot.x);

@@ -21,14 +21,43 @@ std::optional<double> value_of(const Row& row, const std::string& quantity) {
   return at->get<double>();
 }
 
+namespace {
+
+/// The text at a path of keys; nothing where there is none.
+std::optional<std::string> text_at(const nlohmann::json& object,
+                                   std::initializer_list<std::string> path) {
+  const nlohmann::json* at = &object;
+  for (const std::string& key : path) {
+    const auto found = at->is_object() ? at->find(key) : at->end();
+    if (!at->is_object() || found == at->end()) return std::nullopt;
+    at = &*found;
+  }
+  return at->is_string() ? std::optional(at->get<std::string>()) : std::nullopt;
+}
+
+/// Why a comparison, a signal or an error has no such number.
+std::optional<std::string> reason_of(const Row& row, const std::string& quantity) {
+  const std::size_t dot = quantity.find('.'), last = quantity.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  const std::string group = quantity.substr(0, dot), name = quantity.substr(dot + 1);
+  if (group == "signals" && last > dot)
+    return text_at(row.summary, {"signals", quantity.substr(dot + 1, last - dot - 1),
+                                 "not_found", quantity.substr(last + 1)});
+  if (group != "errors") return std::nullopt;
+  if (auto reason = text_at(row.summary, {"error_sources", name, "reason"})) return reason;
+  const auto comparisons = row.summary.find("comparisons");
+  if (comparisons == row.summary.end()) return std::nullopt;
+  for (const auto& [one, told] : comparisons->items())
+    if (quantity.ends_with("_" + one)) return text_at(told, {"reason"});
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::string why_absent(const Row& row, const std::string& quantity) {
   if (!row.error.empty()) return row.error;
-  const auto comparisons = row.summary.find("comparisons");
-  if (comparisons != row.summary.end())
-    for (const auto& [name, told] : comparisons->items())
-      if (quantity.ends_with("_" + name) && told.contains("reason"))
-        return "no " + quantity + ": " + told.at("reason").get<std::string>();
-  return "no " + quantity;
+  const auto reason = reason_of(row, quantity);
+  return "no " + quantity + (reason ? ": " + *reason : "");
 }
 
 std::optional<bool> balance_closes(const Study& study, const Row& row) {

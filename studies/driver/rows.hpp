@@ -20,13 +20,15 @@ struct Row {
   nlohmann::json summary = nlohmann::json::object();
   std::string error;          ///< empty when the run went to its end
   std::filesystem::path run;  ///< folder, relative to study.json
+  std::string command;        ///< one line that reproduces it
 };
 
 /// The finite number at a dotted path of the summary ("errors.displacement_l2"); nothing if it
 /// is absent or the run failed.
 std::optional<double> value_of(const Row& row, const std::string& quantity);
 
-/// Why a row has no such value: its error, why it was not compared, or that it has none.
+/// Why a row has no such value: its error, why it was not compared or a signal not found, or
+/// that it has none.
 std::string why_absent(const Row& row, const std::string& quantity);
 
 /// Whether |invariants.energy_drift| of a run is within the study's balance_tolerance; nothing

@@ -1,8 +1,7 @@
 #pragma once
 // Runs the runs of a study: from the cache, or as child processes of this program.
 
-#include "studies/driver/cache.hpp"
-#include "studies/driver/rows.hpp"
+#include "studies/driver/plan.hpp"
 
 #include <filesystem>
 #include <vector>
@@ -24,8 +23,5 @@ struct RunnerResult {
 /// row with its error. After Ctrl-C children are stopped and the rows so far returned. Throws
 /// InputError when a scene, method or setting of the study is wrong.
 RunnerResult run_cases(const Study& study, const RunnerOptions& options);
-
-/// Letters, digits, points and hyphens of a text, for file names: "xi 1, 25 %" -> "xi-1-25".
-std::string slug(const std::string& text);
 
 }  // namespace concord::studies

@@ -35,7 +35,7 @@ void StrictTable::missing(const std::string& key, const std::string& allowed) co
 }
 
 const ConfigNode* StrictTable::node(const std::string& key) {
-  m_known.push_back(key);
+  if (std::find(m_known.begin(), m_known.end(), key) == m_known.end()) m_known.push_back(key);
   return m_table->find(key);
 }
 

@@ -2,7 +2,9 @@
 
 #include "scene/reader.hpp"
 #include "scene/suggest.hpp"
+#include "studies/driver/cache.hpp"
 #include "studies/driver/compare.hpp"
+#include "studies/driver/derive.hpp"
 #include "studies/driver/progress.hpp"
 #include "studies/driver/runner.hpp"
 #include "studies/driver/study_output.hpp"
@@ -52,7 +54,9 @@ bool do_study(const std::string& name, const StudyOptions& options, const fs::pa
   result.study = &study;
   result.interrupted = run.interrupted;
   result.rows = std::move(run.rows);
+  add_signals(study, result.rows, fs::absolute(folder));
   compare_runs(study, result.rows, fs::absolute(folder));
+  add_errors(study, result.rows, fs::absolute(folder));
   result.fits = fit_all(study, result.rows);
   result.references = references_of(study, result.rows);
   result.claims = judge(study, result.rows, result.fits, result.references);

@@ -2,55 +2,10 @@
 
 #include "scene/section.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace concord::studies {
 namespace {
-
-std::vector<std::uint64_t> read_seeds(StrictTable& table) {
-  std::vector<std::uint64_t> seeds;
-  for (const double seed : table.positive_numbers("seeds")) {
-    if (seed != std::floor(seed)) table.reject(*table.node("seeds"), "whole numbers above 0");
-    seeds.push_back(static_cast<std::uint64_t>(seed));
-  }
-  return seeds;
-}
-
-/// Replaces ladders by those of `quick`; false when quick reports leave the case out.
-bool apply_quick(StrictTable& table, Case& entry, bool full) {
-  const scene::ConfigNode* quick = table.node("quick");
-  if (!quick) return true;
-  if (quick->kind == scene::ConfigNode::Kind::boolean) return full || quick->boolean;
-  StrictTable inner = table.table("quick", "false, or { resolutions = [...], seeds = [...] }");
-  auto resolutions = inner.positive_numbers("resolutions");
-  auto seeds = read_seeds(inner);
-  inner.finish();
-  if (full) return true;
-  if (!resolutions.empty()) entry.resolutions = std::move(resolutions);
-  if (!seeds.empty()) entry.seeds = std::move(seeds);
-  return true;
-}
-
-/// One case for every combination of swept values.
-std::vector<Case> expand(const Case& base,
-                         const std::map<std::string, std::vector<std::string>>& lists) {
-  std::vector<Case> cases{base};
-  for (const auto& [key, values] : lists) {
-    const bool of_scene = key.find('.') != std::string::npos;
-    const std::string name = of_scene ? key.substr(key.rfind('.') + 1) : key;
-    std::vector<Case> next;
-    for (const Case& one : cases)
-      for (const std::string& value : values) {
-        Case swept = one;
-        (of_scene ? swept.scene_set : swept.set)[key] = value;
-        swept.variant += (swept.variant.empty() ? "" : ", ") + name + " " + value;
-        next.push_back(std::move(swept));
-      }
-    cases = std::move(next);
-  }
-  return cases;
-}
 
 void read_other(StrictTable& table, Claim& claim) {
   claim.other = claim.selector;
@@ -58,8 +13,10 @@ void read_other(StrictTable& table, Claim& claim) {
   claim.other_resolution = claim.resolution;
   const auto* node = table.node("other");
   if (claim.kind == ClaimKind::minimum && node == nullptr) return;
-  if (claim.kind != ClaimKind::ratio && claim.kind != ClaimKind::minimum) {
-    if (node) table.reject(*node, "only for kind = \"ratio\" and \"minimum\"");
+  if (claim.kind != ClaimKind::ratio && claim.kind != ClaimKind::minimum &&
+      claim.kind != ClaimKind::matched_ratio) {
+    if (node)
+      table.reject(*node, "only for kind = \"ratio\", \"minimum\" and \"matched_ratio\"");
     return;
   }
   claim.divided = true;
@@ -69,6 +26,7 @@ void read_other(StrictTable& table, Claim& claim) {
   if (selector.scene) claim.other.scene = selector.scene;
   if (selector.method) claim.other.method = selector.method;
   if (selector.variant) claim.other.variant = selector.variant;
+  if (selector.probe) claim.other.probe = selector.probe;
   claim.other_quantity = other.text_or("quantity", claim.quantity);
   if (auto resolution = other.optional_number("resolution"))
     claim.other_resolution = resolution;
@@ -88,6 +46,19 @@ void read_place(StrictTable& table, Claim& claim) {
   claim.setting_maximum = table.optional_number("setting_max");
   if ((claim.setting_minimum || claim.setting_maximum) && claim.setting.empty())
     table.missing("setting", "the setting that setting_min and setting_max bound");
+}
+
+/// The error at which times are compared.
+void read_level(StrictTable& table, Claim& claim) {
+  if (claim.kind != ClaimKind::matched_ratio) {
+    for (const char* key : {"level", "time"})
+      if (const auto* node = table.node(key))
+        table.reject(*node, "only for kind = \"matched_ratio\"");
+    return;
+  }
+  claim.level = table.number_or("level", 0);
+  if (!(claim.level > 0)) table.missing("level", "a relative error above 0, such as 0.01");
+  claim.time = read_work_time(table);
 }
 
 LeaveOut read_leave_out(StrictTable table) {
@@ -118,29 +89,7 @@ Selector read_selector(StrictTable& table) {
       pattern += (pattern.empty() ? "" : "\n") + text;
     return pattern;
   };
-  return {part("scene"), part("method"), part("variant")};
-}
-
-CaseEntry read_case(StrictTable table, bool full) {
-  Case entry;
-  entry.where = table.where();
-  entry.scene = table.text("scene");
-  entry.method = table.text("method");
-  entry.variant = table.text_or("variant", "");
-  entry.set = table.scalars("set");
-  entry.scene_set = table.scalars("scene_set");
-  const auto lists = table.scalar_lists("sweep");
-  entry.perturb = table.number_or("perturb", 0);
-  if (entry.perturb < 0 || entry.perturb > max_perturb)
-    table.reject(*table.node("perturb"), "a fraction of the spacing from 0 to 0.45");
-  entry.resolutions = table.positive_numbers("resolutions");
-  if (entry.resolutions.empty()) table.missing("resolutions", "a list such as [4, 8, 16]");
-  if (auto seeds = read_seeds(table); !seeds.empty()) entry.seeds = seeds;
-  entry.frames = table.flag_or("frames", false);
-  const bool in_mode = apply_quick(table, entry, full);
-  table.finish();
-  std::sort(entry.resolutions.begin(), entry.resolutions.end());
-  return {expand(entry, lists), in_mode};
+  return {part("scene"), part("method"), part("variant"), part("probe")};
 }
 
 Fit read_fit(StrictTable table) {
@@ -203,19 +152,18 @@ Claim read_claim(StrictTable table) {
                                   {"value", ClaimKind::value},
                                   {"ratio", ClaimKind::ratio},
                                   {"gci", ClaimKind::gci},
-                                  {"minimum", ClaimKind::minimum}});
+                                  {"minimum", ClaimKind::minimum},
+                                  {"matched_ratio", ClaimKind::matched_ratio}});
   claim.selector = read_selector(table);
   claim.quantity = table.text("quantity");
   claim.resolution = table.optional_number("resolution");
-  const Pool by_default = Pool::max;
-  claim.over_seeds =
-      choose<Pool>(table, "over_seeds",
-                   {{"max", Pool::max}, {"min", Pool::min}, {"mean", Pool::mean}}, &by_default);
+  claim.over_seeds = read_pool(table);
   claim.unit = table.text_or("unit", "1");
   display_factor(claim.unit, claim.where);
   claim.minimum = table.optional_number("min");
   claim.maximum = table.optional_number("max");
   read_place(table, claim);
+  read_level(table, claim);
   if (!claim.minimum && !claim.maximum && !claim.setting_minimum && !claim.setting_maximum)
     table.missing("max", "a bound: min, max or both");
   claim.full_only = table.flag_or("full_only", false);

@@ -20,11 +20,23 @@ Fit read_fit(StrictTable table);
 Reference read_reference(StrictTable table);
 Comparison read_comparison(StrictTable table);
 Claim read_claim(StrictTable table);
+Signal read_signal(StrictTable table);
+ErrorEntry read_error(StrictTable table);
+Matched read_matched(StrictTable table);
+Heatmap read_heatmap(StrictTable table);
 Plot read_plot(StrictTable table);
 Picture read_picture(StrictTable table);
 
-/// Keys scene, method, variant of any of them.
+/// Throws InputError where entries of a study contradict each other or select no case. `all`:
+/// the cases of both modes.
+void check_study(const Study& study, const std::vector<Case>& all);
+
+/// Keys scene, method, variant, probe of any of them.
 Selector read_selector(StrictTable& table);
+/// Key time: "wall_s" (default) or "total".
+WorkTime read_work_time(StrictTable& table);
+/// Key over_seeds: "max" (default), "min" or "mean".
+Pool read_pool(StrictTable& table);
 
 /// One of `choices` by its name; `fallback` where the key is absent. Throws InputError for
 /// another word, or for none where there is no fallback.

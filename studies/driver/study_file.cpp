@@ -3,57 +3,11 @@
 #include "scene/suggest.hpp"
 #include "studies/driver/study_entries.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 
 namespace concord::studies {
 namespace {
-
-void check_selects(const std::vector<Case>& all, const Selector& selector, bool one,
-                   const SourcePosition& where, const std::string& key) {
-  std::vector<std::string> matching, titles;
-  for (const Case& entry : all) {
-    titles.push_back(entry.title());
-    if (entry.matches(selector)) matching.push_back(entry.title());
-  }
-  std::string found =
-      fmt::format("scene {}, method {}, variant {}", selector.scene.value_or("any"),
-                  selector.method.value_or("any"), selector.variant.value_or("any"));
-  for (std::size_t at; (at = found.find('\n')) != std::string::npos;)
-    found.replace(at, 1, " or ");
-  if (matching.empty())
-    throw InputError(where, key, found,
-                     "a case of this study: " + fmt::format("{}", fmt::join(titles, "; ")));
-  if (one && matching.size() > 1)
-    throw InputError(where, key, found,
-                     "one case, but it selects " +
-                         fmt::format("{}", fmt::join(matching, "; ")));
-}
-
-void check(const Study& study, const std::vector<Case>& all) {
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (all[i].title() == all[j].title())
-        throw InputError(all[i].where, "case.variant", all[i].title(),
-                         "a scene, method and variant that no other case has");
-  for (std::size_t i = 0; i < study.claims.size(); ++i) {
-    const Claim& claim = study.claims[i];
-    for (std::size_t j = 0; j < i; ++j)
-      if (study.claims[j].id == claim.id)
-        throw InputError(claim.where, "claim.id", claim.id, "an id that no other claim has");
-    const bool many = claim.kind == ClaimKind::value || claim.kind == ClaimKind::minimum;
-    check_selects(all, claim.selector, !many, claim.where, "claim");
-    if (claim.divided) check_selects(all, claim.other, true, claim.where, "claim.other");
-  }
-  for (const Reference& reference : study.references)
-    check_selects(all, reference.selector, true, reference.where, "reference");
-  for (const Comparison& comparison : study.comparisons) {
-    check_selects(all, comparison.reference, true, comparison.where, "compare.reference");
-    check_selects(all, comparison.selector, false, comparison.where, "compare");
-  }
-}
 
 Study parse_study(const std::filesystem::path& file, bool full) {
   const scene::ConfigNode root = scene::read_toml(file);
@@ -80,13 +34,21 @@ Study parse_study(const std::filesystem::path& file, bool full) {
     study.references.push_back(read_reference(entry));
   for (const StrictTable& entry : table.tables("compare"))
     study.comparisons.push_back(read_comparison(entry));
+  for (const StrictTable& entry : table.tables("signal"))
+    study.signals.push_back(read_signal(entry));
+  for (const StrictTable& entry : table.tables("error"))
+    study.errors.push_back(read_error(entry));
+  for (const StrictTable& entry : table.tables("matched"))
+    study.matched.push_back(read_matched(entry));
+  for (const StrictTable& entry : table.tables("heatmap"))
+    study.heatmaps.push_back(read_heatmap(entry));
   for (const StrictTable& entry : table.tables("claim"))
     study.claims.push_back(read_claim(entry));
   for (const StrictTable& entry : table.tables("plot")) study.plots.push_back(read_plot(entry));
   for (const StrictTable& entry : table.tables("picture"))
     study.pictures.push_back(read_picture(entry));
   table.finish();
-  check(study, all);
+  check_study(study, all);
   return study;
 }
 
@@ -97,7 +59,7 @@ bool Case::matches(const Selector& selector) const {
     return !pattern || matches_pattern(*pattern, text);
   };
   return fits(selector.scene, scene) && fits(selector.method, method) &&
-         fits(selector.variant, variant);
+         fits(selector.variant, variant) && fits(selector.probe, probe);
 }
 
 bool matches_pattern(std::string_view pattern, std::string_view text) {
@@ -114,7 +76,8 @@ bool matches_pattern(std::string_view pattern, std::string_view text) {
 }
 
 std::string Case::title() const {
-  return method + (variant.empty() ? "" : " (" + variant + ")") + " on " + scene;
+  return (probe.empty() ? "" : probe + " of ") + method +
+         (variant.empty() ? "" : " (" + variant + ")") + " on " + scene;
 }
 
 Study read_study(const std::string& name, bool full, const std::filesystem::path& home) {
@@ -136,6 +99,8 @@ std::vector<std::string> study_names(const std::filesystem::path& home) {
   std::sort(names.begin(), names.end());
   return names;
 }
+
+const char* to_text(WorkTime time) { return time == WorkTime::wall ? "wall_s" : "total"; }
 
 double display_factor(const std::string& unit, const SourcePosition& where) {
   static const std::map<std::string, double> factors{

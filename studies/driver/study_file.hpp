@@ -2,6 +2,7 @@
 // What a study.toml says, checked. Its keys are described in studies/README.md.
 
 #include "scene/errors.hpp"
+#include "studies/driver/measures.hpp"
 
 #include <array>
 #include <cstdint>
@@ -9,22 +10,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace concord::studies {
 
 /// Largest perturbation, as a fraction of the spacing: beyond it neighbours may change places.
 inline constexpr double max_perturb = 0.45;
-
-/// Scene, method and variant of a case; a part left out matches any. A part is a pattern, see
-/// matches_pattern.
-struct Selector {
-  std::optional<std::string> scene, method, variant;
-};
-
-/// Whether a text is a pattern's: alternatives, a line each, in which "*" stands for any text.
-bool matches_pattern(std::string_view pattern, std::string_view text);
 
 /// One curve: a scene, a method with settings, resolutions and seeds.
 struct Case {
@@ -35,6 +26,9 @@ struct Case {
   std::vector<double> resolutions;               ///< ascending
   std::vector<std::uint64_t> seeds{1};
   bool frames = false;
+  std::string probe;                           ///< a test of `concord probe`; empty: runs
+  std::map<std::string, std::string> options;  ///< of the probe
+  int repeats = 0;                             ///< timed warm runs; 0: the run itself is timed
   SourcePosition where;
 
   bool matches(const Selector& selector) const;
@@ -73,8 +67,7 @@ struct Comparison {
   SourcePosition where;
 };
 
-enum class ClaimKind { slope, value, ratio, gci, minimum };
-enum class Pool { max, min, mean };
+enum class ClaimKind { slope, value, ratio, gci, minimum, matched_ratio };
 
 struct Claim {
   std::string id, statement, source, source_value;
@@ -82,7 +75,8 @@ struct Claim {
   Selector selector;
   std::string quantity;
   std::optional<double> resolution;
-  Selector other;  ///< ratio, minimum: the denominator's case, parts left out as in `selector`
+  Selector other;  ///< ratio, minimum: the denominator's case, parts left out as in `selector`;
+                   ///< matched_ratio: the numerator's
   bool divided = false;  ///< minimum: there is a denominator
   std::string other_quantity;
   std::optional<double> other_resolution;
@@ -91,6 +85,8 @@ struct Claim {
   std::optional<double> minimum, maximum;  ///< in `unit`
   std::string setting;  ///< minimum: the setting whose value at the minimum is bounded
   std::optional<double> setting_minimum, setting_maximum;
+  double level = 0;                ///< matched_ratio: of the error
+  WorkTime time = WorkTime::wall;  ///< matched_ratio
   bool full_only = false;
   SourcePosition where;
 };
@@ -111,7 +107,7 @@ struct Window {
 };
 
 struct Plot {
-  std::string kind, quantity, title, setting, setting_y;
+  std::string kind, quantity, title, setting, setting_y, note;
   Selector selector;
   std::optional<double> resolution, slope;
   std::vector<double> resolutions;   ///< curve, history; empty: all
@@ -121,7 +117,8 @@ struct Plot {
   std::string x_label, y_label, label;
   std::optional<double> x_scale, y_scale;
   std::vector<Baseline> baseline;
-  std::optional<Window> inset;  ///< curve: enlarged in a corner
+  std::optional<Window> inset;     ///< curve: enlarged in a corner
+  WorkTime time = WorkTime::wall;  ///< work_precision
 };
 
 /// What picks a frame and its values.
@@ -154,6 +151,10 @@ struct Study {
   std::vector<Fit> fits;
   std::vector<Reference> references;
   std::vector<Comparison> comparisons;
+  std::vector<Signal> signals;
+  std::vector<ErrorEntry> errors;
+  std::vector<Matched> matched;
+  std::vector<Heatmap> heatmaps;
   std::vector<Claim> claims;
   std::vector<Plot> plots;
   std::vector<Picture> pictures;
@@ -166,6 +167,9 @@ Study read_study(const std::string& name, bool full, const std::filesystem::path
 
 /// Names of the studies below `home`, sorted.
 std::vector<std::string> study_names(const std::filesystem::path& home);
+
+/// "wall_s" or "total".
+const char* to_text(WorkTime time);
 
 /// Factor from SI to `unit` ("mm" -> 1e3). Throws InputError at `where` for an unknown unit.
 double display_factor(const std::string& unit, const SourcePosition& where = {});

@@ -34,6 +34,8 @@ const char* to_text(ClaimKind kind) {
       return "gci";
     case ClaimKind::minimum:
       return "minimum";
+    case ClaimKind::matched_ratio:
+      return "matched_ratio";
   }
   return "";
 }
@@ -54,6 +56,10 @@ json claim_json(const ClaimResult& result) {
   put(object, "resolution", claim.resolution);
   put(object, "min", claim.minimum);
   put(object, "max", claim.maximum);
+  if (claim.kind == ClaimKind::matched_ratio) {
+    object["level"] = claim.level;
+    object["time"] = to_text(claim.time);
+  }
   put(object, "place", result.place);
   if (!claim.setting.empty()) object["setting"] = claim.setting;
   if (!result.reason.empty()) object["reason"] = result.reason;
@@ -77,7 +83,12 @@ json row_json(const StudyResult& result, const Row& row) {
   object["perturb"] = entry.perturb;
   object["settings"] = entry.set;
   object["scene_settings"] = entry.scene_set;
+  if (!entry.probe.empty()) {
+    object["probe"] = entry.probe;
+    object["options"] = entry.options;
+  }
   object["run"] = row.run.string();
+  if (!row.command.empty()) object["command"] = row.command;
   if (!row.error.empty()) object["error"] = row.error;
   if (const auto closes = balance_closes(*result.study, row))
     object["balance"] = balance_text(*closes);

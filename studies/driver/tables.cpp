@@ -27,11 +27,16 @@ Cells case_cells(const Case& entry) { return {entry.scene, entry.method, entry.v
 std::set<std::string> quantities_of(const std::vector<Row>& rows) {
   std::set<std::string> quantities;
   for (const Row& row : rows)
-    for (const char* group : {"errors", "invariants", "quantities"}) {
+    for (const char* group : {"errors", "invariants", "quantities", "signals"}) {
       const auto found = row.summary.find(group);
       if (found == row.summary.end() || !found->is_object()) continue;
-      for (const auto& [name, value] : found->items())
-        quantities.insert(std::string(group) + "." + name);
+      for (const auto& [name, value] : found->items()) {
+        const std::string path = std::string(group) + "." + name;
+        if (!value.is_object()) quantities.insert(path);
+        if (!value.is_object()) continue;  // a signal: its features
+        for (const auto& [feature, number] : value.items())
+          if (number.is_number()) quantities.insert(path + "." + feature);
+      }
     }
   return quantities;
 }

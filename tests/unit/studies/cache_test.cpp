@@ -96,6 +96,16 @@ TEST(CacheKey, ChangesWithEverythingThatDecidesTheRun) {
   entry.set["xi_n"] = "0";
   EXPECT_NE(key(4, 1), base);
   entry.set.clear();
+  entry.repeats = 5;
+  EXPECT_NE(key(4, 1), base);
+  entry.repeats = 0;
+  entry.probe = "spectrum";
+  const std::string probe = key(4, 1);
+  EXPECT_NE(probe, base);
+  entry.options["xi"] = "1";
+  EXPECT_NE(key(4, 1), probe);
+  entry.options.clear();
+  entry.probe.clear();
   problem.normalised_text = "b";
   EXPECT_NE(key(4, 1), base);
   problem.normalised_text = "a";
