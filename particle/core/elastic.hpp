@@ -1,6 +1,7 @@
 #pragma once
 // What a problem's material is to the kernels.
 
+#include "particle/core/features.hpp"
 #include "particle/core/stress_kernel.hpp"
 #include "scene/material.hpp"
 #include "scene/problem.hpp"
@@ -53,7 +54,9 @@ template <class F> auto with_law(StressLaw law, const F& f) {
     case st_venant_kirchhoff:
       return f(std::integral_constant<StressLaw, st_venant_kirchhoff>{});
     case j2_hencky:
-      return f(std::integral_constant<StressLaw, j2_hencky>{});
+      if constexpr (features::plasticity)
+        return f(std::integral_constant<StressLaw, j2_hencky>{});
+      break;
   }
   throw std::logic_error("stress law without a kernel");
 }

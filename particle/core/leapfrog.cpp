@@ -1,5 +1,6 @@
 #include "particle/core/leapfrog.hpp"
 
+#include "particle/core/features.hpp"
 #include "scene/interrupt.hpp"
 
 #include <chrono>
@@ -10,15 +11,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// v = keep v + scale f/m, one vector a particle.
-template <int Dim>
+/// v = keep v + scale f/m, one vector a particle; keep is 1 without damping.
+template <int Dim, bool Damped>
 CONCORD_CLONES void kick_range(std::size_t begin, std::size_t end, double keep, double scale,
                                const double* inverse_mass, const double* f, double* v) {
   constexpr int S = Lanes<Dim>::stride;
   for (std::size_t a = begin; a < end; ++a) {
     const Vec<Dim> force =
         load<Vec<Dim>>(f + a * S) * broadcast(scale * inverse_mass[a], Vec<Dim>{});
-    store(v + a * S, load<Vec<Dim>>(v + a * S) * broadcast(keep, Vec<Dim>{}) + force);
+    Vec<Dim> kept = load<Vec<Dim>>(v + a * S);
+    if constexpr (Damped) kept *= broadcast(keep, Vec<Dim>{});
+    store(v + a * S, kept + force);
   }
 }
 
@@ -62,12 +65,12 @@ void Leapfrog::evaluate() {
 void Leapfrog::kick(double dt, double damping) {
   const double keep = (1 - 0.5 * damping * dt) / (1 + 0.5 * damping * dt),
                scale = dt / (1 + 0.5 * damping * dt);
-  const Body& body = m_model.body();
-  m_executor.for_pieces(body.n, [&](std::size_t begin, std::size_t end) {
-    if (body.dim == 3)
-      kick_range<3>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
-    else
-      kick_range<2>(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
+  const bool damped = features::damping && damping > 0;
+  const auto range = m_model.body().dim == 3
+                         ? (damped ? kick_range<3, true> : kick_range<3, false>)
+                         : (damped ? kick_range<2, true> : kick_range<2, false>);
+  m_executor.for_pieces(m_inverse_mass.size(), [&](std::size_t begin, std::size_t end) {
+    range(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
   });
   m_constraints.clear(m_v);
 }
@@ -180,14 +183,14 @@ class Leapfrog::Schedule {
 void Leapfrog::step(double dt) {
   m_in_step = true;
   const double kick_dt = 0.5 * (m_dt_last + dt);
-  const bool dissipates = m_dissipation.active();
+  const bool dissipates = (features::viscosity || features::damping) && m_dissipation.active();
   if (dissipates) m_dissipation.before(load_time(), m_u, m_v, m_f);
   kick(kick_dt, m_damping);
   drift(dt);
   if (dissipates) m_dissipation.add(kick_dt, m_v);
   m_dt_last = dt;
   evaluate();
-  m_model.commit();
+  if (features::plasticity) m_model.commit();
   m_in_step = false;
   if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
 }
@@ -237,8 +240,9 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     outcome.settled = look && options.stop_at_residual > 0 && m_t >= m_ramp &&
                       settled(options.stop_at_residual);
     outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count();
-    const bool row = rows.due(m_t), frame = frames.due(m_t);
-    write(recorder, row, frame);
+    const bool row = features::output && rows.due(m_t),
+               frame = features::output && frames.due(m_t);
+    if (features::output) write(recorder, row, frame);
     if ((row || frame) && options.progress) {
       options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
     }

@@ -1,5 +1,6 @@
 #include "particle/core/plasticity_plane.hpp"
 
+#include "particle/core/features.hpp"
 #include "particle/core/stress_kernel.hpp"
 
 #include <bit>
@@ -223,7 +224,8 @@ CONCORD_CLONES unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][W]
   double flowing = 0;
   for (int l = 0; l < W; ++l) t.flows[l] = t.q[l] > t.yield[l] ? 1 : 0;
   for (int l = 0; l < W; ++l) flowing += t.flows[l];
-  if (flowing > 0) {  // an elastic lane takes the same values on either way
+  // An elastic lane takes the same values on either way.
+  if (features::return_map && flowing > 0) {
     return_map(law, old, t, next, beta);
     new_metric(h, old, t, beta, next);
   } else {

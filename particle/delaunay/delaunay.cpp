@@ -1,5 +1,6 @@
 #include "particle/delaunay/delaunay.hpp"
 
+#include "particle/core/features.hpp"
 #include "particle/delaunay/kernels.hpp"
 
 #include <cmath>
@@ -67,12 +68,12 @@ void DelaunayModel::forces_in(const double* u, const double* v, double* f,
           block, m_constitution.kernel().constants, m_inverse_V.data(), u, m_H.data(),
           m_P.data(), f);
     });
-    if (m_viscosity) add_viscous_stress<Dim>(block, v);
+    if (features::viscosity && m_viscosity) add_viscous_stress<Dim>(block, v);
   });
   for (const Index bad : m_bad) {
     if (bad >= 0) throw BadState{"det F", bad};
   }
-  if (m_contact) {
+  if (features::contact && m_contact) {
     const ContactColumns columns{m_body.X.data(),    u,          m_H.data(),
                                  m_inverse_V.data(), m_P.data(), f};
     const ContactFactors factors{m_normal_factor, m_tangential_factor};
