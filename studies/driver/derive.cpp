@@ -82,6 +82,8 @@ void add_error(const Study& study, const ErrorEntry& entry, const std::vector<Ro
     difference = of_number(entry, row, other);
   json& source = row.summary["error_sources"][entry.name];
   source = json::object();
+  source[entry.of_history ? "column" : "quantity"] =
+      entry.of_history ? entry.column : entry.quantity;
   if (const std::string title = title_of(study, entry, other); !title.empty())
     source["reference"] = title;
   if (difference.reference) source["value"] = *difference.reference;
@@ -101,6 +103,7 @@ void add_signals(const Study& study, std::vector<Row>& rows, const fs::path& out
       if (!study.cases[row.case_index].matches(signal.selector)) continue;
       json& target = row.summary["signals"][signal.name];
       target = json::object();
+      target["column"] = signal.column;
       const Record record = read_record(history_of(row, out), signal.column);
       for (const std::string& name : signal.features) {
         const Feature feature =

@@ -47,7 +47,7 @@ void read_axes(StrictTable& table, Plot& plot) {
 /// One column, or several in one plot.
 void read_history(StrictTable& table, Plot& plot) {
   plot.columns = table.texts("columns");
-  if (plot.columns.empty()) plot.quantity = table.text("quantity");
+  plot.quantity = plot.columns.empty() ? table.text("quantity") : table.text_or("quantity", "");
   plot.resolutions = table.positive_numbers("resolutions");
   plot.change = table.flag_or("change", false);
   plot.baseline = read_baseline(table);
