@@ -61,16 +61,28 @@ template <int dim> void Observer<dim>::connect(const InternalForce& force, MassP
   m_mass = std::move(mass);
 }
 
+template <int dim> std::vector<std::string> Observer<dim>::columns() const {
+  std::vector<std::string> names{"t_s"};
+  const auto add = [&names](const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+  };
+  add(m_quantities.columns());
+  if (m_mass) add({"kinetic_energy_J"});
+  add({"internal_energy_J"});
+  if (m_fields.plastic()) add({"plastic_work_J"});
+  add({"external_work_J", "energy_balance_J"});
+  if (!m_mass) return names;
+  for (const char axis : {'x', 'y', 'z'})
+    add({std::string("linear_momentum_") + axis + "_kg_m_s"});
+  for (const char axis : {'x', 'y', 'z'})
+    add({std::string("angular_momentum_") + axis + "_kg_m2_s"});
+  return names;
+}
+
 template <int dim> void Observer<dim>::start(const State& state) {
   const Stopwatch watch(m_seconds);
   if (!m_request.out.empty()) {
-    std::vector<std::string> columns{"t_s"};
-    if (m_mass) columns.push_back("kinetic_energy_J");
-    columns.push_back("internal_energy_J");
-    if (m_fields.plastic()) columns.push_back("plastic_work_J");
-    columns.push_back("external_work_J");
-    for (const std::string& c : m_quantities.columns()) columns.push_back(c);
-    m_history = scene::HistoryWriter(m_request.out / "history.csv", columns);
+    m_history = scene::HistoryWriter(m_request.out / "history.csv", columns());
     if (m_request.write_frames) m_frames = scene::FrameWriter(m_request.out);
   }
   row(state);
@@ -100,46 +112,50 @@ template <int dim> void Observer<dim>::after_step(const State& state) {
 
 template <int dim> void Observer<dim>::row(const State& state) {
   m_last_row = state.t;
-  const double internal = m_force->energy(state.u);
   std::vector<double> values{state.t};
-  double kinetic = 0;
-  if (m_mass) {
-    State::Vector Mv(state.v.size());
-    m_mass(state.v, Mv);
-    kinetic = 0.5 * (state.v * Mv);
-    values.push_back(kinetic);
-    m_kinetic_max = std::max(m_kinetic_max, kinetic);
-    follow_momenta(state);
-  }
-  values.push_back(internal);
-  if (m_fields.plastic()) {
-    values.push_back(m_fields.plastic_work());
-    m_result.quantities["gauss_plastic_strain_max"] = m_fields.peak_plastic_strain();
-  }
-  if (m_mass || m_fields.plastic()) {
-    follow_energy(kinetic + internal + m_fields.plastic_work(), state.external_work);
-  }
-  values.push_back(state.external_work);
   const std::vector<double> quantities = m_quantities.evaluate(state, m_mass);
   for (std::size_t k = 0; k < quantities.size(); ++k) {
     m_result.quantities[m_quantities.keys()[k]] = quantities[k];
     values.push_back(quantities[k]);
+  }
+  double total = 0;
+  std::array<Vec3, 2> momentum{Vec3::Zero(), Vec3::Zero()};
+  if (m_mass) {
+    State::Vector Mv(state.v.size());
+    m_mass(state.v, Mv);
+    total = 0.5 * (state.v * Mv);
+    values.push_back(total);
+    m_kinetic_max = std::max(m_kinetic_max, total);
+    momentum = momenta(state, Mv);
+    follow_momenta(momentum);
+  }
+  values.push_back(m_force->energy(state.u));
+  total += values.back();
+  if (m_fields.plastic()) {
+    values.push_back(m_fields.plastic_work());
+    total += values.back();
+    m_result.quantities["gauss_plastic_strain_max"] = m_fields.peak_plastic_strain();
+  }
+  values.push_back(state.external_work);
+  values.push_back(follow_energy(total, state.external_work));
+  if (m_mass) {
+    for (const Vec3& p : momentum) values.insert(values.end(), p.begin(), p.end());
   }
   if (m_history.active()) m_history.append(values);
   m_result.t_end = state.t;
   m_result.steps = state.step;
 }
 
-template <int dim> void Observer<dim>::follow_energy(double total, double external_work) {
+template <int dim> double Observer<dim>::follow_energy(double total, double external_work) {
   const double energy = total - external_work;
   if (m_rows_done == 0) m_energy_0 = energy;
   m_energy_change = std::max(m_energy_change, std::abs(energy - m_energy_0));
   m_energy_scale = std::max(m_energy_scale, total);
+  return energy - m_energy_0;
 }
 
-template <int dim> void Observer<dim>::follow_momenta(const State& state) {
-  State::Vector Mv(state.v.size());
-  m_mass(state.v, Mv);
+template <int dim>
+std::array<Vec3, 2> Observer<dim>::momenta(const State& state, const State::Vector& Mv) const {
   std::array<Vec3, 2> momentum{Vec3::Zero(), Vec3::Zero()};
   const scene::Mesh& mesh = m_discretisation.mesh();
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
@@ -148,6 +164,10 @@ template <int dim> void Observer<dim>::follow_momenta(const State& state) {
     momentum[0] += p;
     momentum[1] += (mesh.nodes[n] + m_discretisation.node_value(state.u, node)).cross(p);
   }
+  return momentum;
+}
+
+template <int dim> void Observer<dim>::follow_momenta(const std::array<Vec3, 2>& momentum) {
   if (m_rows_done == 0) m_momentum_0 = momentum;
   for (int k = 0; k < 2; ++k) {
     const Vec3 change = momentum[k] - m_momentum_0[k];
@@ -191,7 +211,7 @@ template <int dim> void Observer<dim>::finish(const State& state, bool sound) {
     m_result.field = std::make_shared<MeshField>(m_discretisation.mesh(),
                                                  m_discretisation.at_nodes(state.u));
   }
-  if (m_energy_scale > 0) {
+  if ((m_mass || m_fields.plastic()) && m_energy_scale > 0) {
     m_result.invariants["energy_drift"] = m_energy_change / m_energy_scale;
   }
   if (!m_mass) return;

@@ -13,6 +13,10 @@ namespace concord::fem {
 /// Watches the states of one run. History rows and frames come at the first state at or after
 /// their times.
 ///
+/// history.csv names its columns as the particle methods do; energy_balance_J is T + W + D -
+/// W_ext less its first value. There is no stabilisation energy and no hourglass number: these
+/// elements are integrated in full and need none.
+///
 /// Invariants (dynamic runs and plastic static ones), maxima over the history rows:
 ///  energy_drift = |T + W + D - W_ext - (T + W)_0| / max(T + W + D), T kinetic, W strain
 ///  energy, D plastic work. In static runs W_ext is summed by the trapezoidal rule over the
@@ -40,8 +44,12 @@ template <int dim> class Observer {
  private:
   void row(const State& state);
   void frame(const State& state);
-  void follow_energy(double total, double external_work);
-  void follow_momenta(const State& state);
+  std::vector<std::string> columns() const;
+  /// T + W + D - W_ext less its first value [J].
+  double follow_energy(double total, double external_work);
+  /// sum M v [kg m/s] and sum x x M v [kg m^2/s].
+  std::array<Vec3, 2> momenta(const State& state, const State::Vector& Mv) const;
+  void follow_momenta(const std::array<Vec3, 2>& momentum);
 
   const scene::Problem& m_problem;
   const scene::RunRequest& m_request;

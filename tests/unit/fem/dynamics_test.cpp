@@ -121,7 +121,10 @@ TEST(Dynamics, WritesHistoryAndFrames) {
   std::ifstream history(folder / "history.csv");
   std::string header, line;
   std::getline(history, header);
-  EXPECT_EQ(header, "t_s,kinetic_energy_J,internal_energy_J,external_work_J");
+  EXPECT_EQ(header,
+            "t_s,kinetic_energy_J,internal_energy_J,external_work_J,energy_balance_J,"
+            "linear_momentum_x_kg_m_s,linear_momentum_y_kg_m_s,linear_momentum_z_kg_m_s,"
+            "angular_momentum_x_kg_m2_s,angular_momentum_y_kg_m2_s,angular_momentum_z_kg_m2_s");
   int rows = 0;
   while (std::getline(history, line)) ++rows;
   EXPECT_GE(rows, 20);
