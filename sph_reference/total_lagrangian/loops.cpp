@@ -31,10 +31,16 @@ namespace avx2 {
 #include "sph_reference/total_lagrangian/rows.inc"
 }
 #undef SPH_TARGET
+#define SPH_TARGET __attribute__((target("arch=x86-64-v4,prefer-vector-width=256")))
+namespace avx512 {
+#include "sph_reference/total_lagrangian/rows.inc"
+}
+#undef SPH_TARGET
 #endif
 
 Isa best_isa() {
 #ifdef SPH_WIDE
+  if (__builtin_cpu_supports("x86-64-v4")) return Isa::avx512;
   if (__builtin_cpu_supports("x86-64-v3")) return Isa::avx2;
 #endif
   return Isa::baseline;
@@ -42,6 +48,7 @@ Isa best_isa() {
 
 Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous, Isa isa) {
 #ifdef SPH_WIDE
+  if (isa == Isa::avx512) return avx512::choose(dim, law, penalty, viscous);
   if (isa == Isa::avx2) return avx2::choose(dim, law, penalty, viscous);
 #endif
   static_cast<void>(isa);

@@ -10,12 +10,13 @@ namespace concord::sph {
 using particle::StressConstants;
 using particle::StressLaw;
 
-/// What the loops read and write. Vectors are columns of `stride` doubles a particle. A record
-/// holds, for each column k of its particle's tensors, [T_k | H_k], a cache line in 3D.
+/// What the loops read and write. Vectors are columns of `stride` doubles a particle, tensors
+/// `dim` of them; a point is [X | u], a cache line in 3D.
 struct State {
-  const double *X, *u, *v;  ///< v: read with viscosity only
-  const double* V;          ///< volumes, with thickness [m^3]
-  double* records;
+  const double *points, *v;  ///< v: read with viscosity only
+  const double* V;           ///< volumes, with thickness [m^3]
+  double* H;                 ///< H_a
+  double* T;                 ///< T_a = P_a K_a^-1
   double* f;
 };
 
@@ -33,24 +34,23 @@ enum class PenaltyForm {
   potential       ///< 1/2 k_ab |l_ab|^2 a pair, with all its derivatives (TLS.11)
 };
 
-/// Instruction sets that the loops are compiled for. One neighbour's vectors fill AVX2's
-/// registers; AVX-512 was not faster.
-enum class Isa { baseline, avx2 };
+/// Instruction sets that the loops are compiled for. AVX-512: its 32 registers of four lanes.
+enum class Isa { baseline, avx2, avx512 };
 /// The widest one that this machine runs.
 Isa best_isa();
 
-/// Each function works on particles [first, last) and writes to these alone.
+/// Each function works on one block of particles [first, last) and writes to these alone.
 struct Loops {
-  /// H_a (TLS.5) into the records.
+  /// H_a (TLS.5).
   void (*gradients)(const Neighbours& rows, std::size_t first, std::size_t last,
                     const State& s);
   /// H_a, P_a and T_a = P_a K_a^-1 (TLS.6), in groups of stress_width from `first`. With a
-  /// potential penalty H_a of all particles must be in the records; Q_a/V_a is added to P_a,
-  /// and f_a set to the penalty's direct force (TLS.11). Returns the first particle with det F
-  /// <= 0 or NaN, or -1.
+  /// potential penalty H_a of all particles must be there; Q_a/V_a is added to P_a, and f_a set
+  /// to the penalty's direct force (TLS.11). Returns the first particle with det F <= 0 or NaN,
+  /// or -1.
   Index (*stresses)(const Neighbours& rows, std::size_t first, std::size_t last,
                     const StressConstants& c, const State& s);
-  /// f_a (TLS.7) from the records of all particles.
+  /// f_a (TLS.7) from H and T of all particles.
   void (*forces)(const Neighbours& rows, std::size_t first, std::size_t last,
                  const Viscosity& eta, const State& s);
 };

@@ -5,16 +5,6 @@
 namespace concord::sph {
 namespace {
 
-/// Particles in a range dealt to a thread: whole groups of stress_width, several ranges a
-/// thread from a few thousand particles on.
-constexpr std::size_t range = 64 * particle::stress_width;
-
-template <class Loop>
-void for_ranges(std::size_t n, const Executor& executor, const Loop& loop) {
-  executor.for_each((n + range - 1) / range,
-                    [&](std::size_t k) { loop(k, k * range, std::min(n, (k + 1) * range)); });
-}
-
 Viscosity viscosity(const TlsphOptions& options, const scene::Material& material, double h) {
   return {options.alpha * material.rho0 * material.longitudinal_wave_speed() * h,
           options.beta * material.rho0 * h * h, 0.01 * h * h};
@@ -32,53 +22,59 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
       m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E,
                              executor)),
       m_loops(choose_loops(body.dim, m_constitution.kernel().law, penalty(), viscous())),
-      m_records(static_cast<std::size_t>(m_points.count()) * 2 * body.dim * body.stride, 0.0),
-      m_u(m_points.make_column()), m_v(viscous() ? m_points.make_column() : Column()),
-      m_bad((static_cast<std::size_t>(body.n) + range - 1) / range, -1) {}
+      m_state(m_points.make_points()), m_H(make_tensors()), m_T(make_tensors()),
+      m_v(viscous() ? m_points.make_column() : Column()), m_bad(m_rows.blocks.size() - 1, -1) {}
+
+Column TotalLagrangianSph::make_tensors() const {
+  return Column(static_cast<std::size_t>(m_points.count()) * m_body.dim * m_body.stride, 0.0);
+}
 
 State TotalLagrangianSph::state(std::span<const double> u, std::span<const double> v,
                                 std::span<double> f, const Executor& executor) {
+  executor.for_pieces(m_body.n, [&](std::size_t first, std::size_t last) {
+    m_points.set_displacements(u, static_cast<Index>(first), static_cast<Index>(last), m_state);
+  });
+  m_points.set_image_displacements(u, m_state, executor);
   const double* all_v = viscous() && !v.empty() ? m_points.extend(v, m_v, executor) : v.data();
-  return {m_points.positions(),
-          m_points.extend(u, m_u, executor),
-          all_v,
-          m_body.V.data(),
-          m_records.data(),
-          f.data()};
+  return {m_state.data(), all_v, m_body.V.data(), m_H.data(), m_T.data(), f.data()};
+}
+
+/// loop(block, first, last) over all blocks.
+template <class Loop>
+void TotalLagrangianSph::for_blocks(const Executor& executor, const Loop& loop) const {
+  executor.for_each(m_rows.blocks.size() - 1, [&](std::size_t k) {
+    loop(k, static_cast<std::size_t>(m_rows.blocks[k]),
+         static_cast<std::size_t>(m_rows.blocks[k + 1]));
+  });
 }
 
 void TotalLagrangianSph::forces(std::span<const double> u, std::span<const double> v,
                                 std::span<double> f, const Executor& executor) {
   const State s = state(u, v, f, executor);
   if (penalty() == PenaltyForm::potential) update_gradients(s, executor);
-  for_ranges(m_body.n, executor, [&](std::size_t k, std::size_t first, std::size_t last) {
+  for_blocks(executor, [&](std::size_t k, std::size_t first, std::size_t last) {
     m_bad[k] = m_loops.stresses(m_rows, first, last, m_constitution.kernel().constants, s);
   });
   for (const Index a : m_bad) {
     if (a >= 0) throw particle::BadState{"det F", a};
   }
-  m_points.reflect_records(m_records.data(), executor);
-  for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
+  m_points.reflect_tensors(m_T, executor);
+  if (penalty() == PenaltyForm::ganzenmueller) m_points.reflect_tensors(m_H, executor);
+  for_blocks(executor, [&](std::size_t, std::size_t first, std::size_t last) {
     m_loops.forces(m_rows, first, last, m_viscosity, s);
   });
 }
 
 void TotalLagrangianSph::update_gradients(const State& s, const Executor& executor) {
-  for_ranges(m_body.n, executor, [&](std::size_t, std::size_t first, std::size_t last) {
+  for_blocks(executor, [&](std::size_t, std::size_t first, std::size_t last) {
     m_loops.gradients(m_rows, first, last, s);
   });
-  m_points.reflect_records(m_records.data(), executor);
+  m_points.reflect_tensors(m_H, executor);
 }
 
-/// H_a as the records hold it, without out-of-plane part.
+/// H_a without out-of-plane part.
 Mat3 TotalLagrangianSph::plane_gradient(Index a) const {
-  const int dim = m_body.dim, S = m_body.stride;
-  const double* record = &m_records[static_cast<std::size_t>(a) * 2 * dim * S];
-  Mat3 H = Mat3::Zero();
-  for (int j = 0; j < dim; ++j) {
-    for (int i = 0; i < dim; ++i) H(i, j) = record[(2 * j + 1) * S + i];
-  }
-  return H;
+  return particle::tensor_at(m_H, m_body.dim, a);
 }
 
 void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H) {
@@ -87,13 +83,12 @@ void TotalLagrangianSph::gradients(std::span<const double> u, std::span<Mat3> H)
   for (Index a = 0; a < m_body.n; ++a) H[a] = m_constitution.complete(plane_gradient(a));
 }
 
-/// l_ab (TLS.8) from the gradients in the records.
-Vec3 TotalLagrangianSph::local_displacement(const double* u, Index a, Index b) const {
+/// l_ab (TLS.8) from the gradients last computed.
+Vec3 TotalLagrangianSph::local_displacement(Index a, Index b) const {
   Vec3 u_ab = Vec3::Zero();
-  for (int i = 0; i < m_body.dim; ++i) {
-    u_ab[i] = u[static_cast<std::size_t>(b) * m_body.stride + i] -
-              u[static_cast<std::size_t>(a) * m_body.stride + i];
-  }
+  const std::size_t stride = m_body.stride;
+  for (int i = 0; i < m_body.dim; ++i)
+    u_ab[i] = m_state[(2 * b + 1) * stride + i] - m_state[(2 * a + 1) * stride + i];
   return u_ab - 0.5 * (plane_gradient(a) + plane_gradient(b)) *
                     (m_points.position(b) - m_points.position(a));
 }
@@ -104,20 +99,20 @@ particle::Energies TotalLagrangianSph::energies(std::span<const double> u,
   update_gradients(s, executor);
   particle::Energies e;
   add_internal_energy(e, executor, [&](Index a) { return plane_gradient(a); });
-  if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(s.u, executor);
+  if (penalty() == PenaltyForm::potential) e.stabilisation = penalty_energy(executor);
   return e;
 }
 
-/// sum over pairs of 1/2 k_ab |l_ab|^2, k_ab = V_a kappa_ab (TLS.11); each pair stands in two
-/// rows, as do a pair with an image and its reflection. A particle and its own image stand in
-/// one: theirs is half a pair (TLS.16).
-double TotalLagrangianSph::penalty_energy(const double* u, const Executor& executor) const {
+/// sum over pairs of 1/2 k_ab |l_ab|^2 (TLS.11). A pair of two blocks stands in two rows, as do
+/// a pair with an image and its reflection. A particle and its own image stand in one: theirs
+/// is half a pair (TLS.16).
+double TotalLagrangianSph::penalty_energy(const Executor& executor) const {
   return executor.sum(m_body.n, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
       for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
-        sum += 0.25 * m_body.V[a] * m_rows.stiffness[k] *
-               local_displacement(u, a, m_rows.other[k]).squaredNorm();
+        sum += (k < m_rows.cut[a] ? 0.5 : 0.25) * m_rows.stiffness[k] *
+               local_displacement(a, m_rows.other[k]).squaredNorm();
       }
     }
     return sum;
@@ -126,12 +121,15 @@ double TotalLagrangianSph::penalty_energy(const double* u, const Executor& execu
 
 double TotalLagrangianSph::viscous_damping_ratio(double omega_max) const {
   if (!viscous()) return 0;
-  double largest = 0;
+  std::vector<double> sums(m_body.n, 0.0);  // sum_b c_ab
   for (Index a = 0; a < m_body.n; ++a) {
-    double sum = 0;
-    for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) sum += m_rows.weight[k];
-    largest = std::max(largest, sum);
+    for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
+      sums[a] += m_rows.weight[k];
+      if (k < m_rows.cut[a]) sums[m_rows.other[k]] += m_rows.weight[k];
+    }
   }
+  double largest = 0;
+  for (Index a = 0; a < m_body.n; ++a) largest = std::max(largest, sums[a] / m_body.V[a]);
   return m_viscosity.linear / m_rho0 * largest / omega_max;  // (TLS.13)
 }
 

@@ -38,7 +38,7 @@ class TotalLagrangianSph final : public particle::ForceModel {
   bool viscous() const override { return m_options.alpha > 0 || m_options.beta > 0; }
   /// Bound on the damping ratio at omega_max by the linear term at alpha (TLS.13).
   double viscous_damping_ratio(double omega_max) const override;
-  std::size_t interactions() const override { return m_rows.count(); }
+  std::size_t interactions() const override { return m_rows.directed; }
 
   const Neighbours& neighbours() const { return m_rows; }
   const Kernel& kernel() const { return m_kernel; }
@@ -52,10 +52,12 @@ class TotalLagrangianSph final : public particle::ForceModel {
   /// State at u and v, continued to the images.
   State state(std::span<const double> u, std::span<const double> v, std::span<double> f,
               const Executor& executor);
-  /// H_a of all points into the records.
+  template <class Loop> void for_blocks(const Executor& executor, const Loop& loop) const;
+  Column make_tensors() const;
+  /// H_a of all points.
   void update_gradients(const State& s, const Executor& executor);
-  Vec3 local_displacement(const double* u, Index a, Index b) const;
-  double penalty_energy(const double* u, const Executor& executor) const;
+  Vec3 local_displacement(Index a, Index b) const;
+  double penalty_energy(const Executor& executor) const;
 
   TlsphOptions m_options;
   Kernel m_kernel;
@@ -64,10 +66,11 @@ class TotalLagrangianSph final : public particle::ForceModel {
   Points m_points;
   Neighbours m_rows;
   Loops m_loops;
-  Column m_records;  ///< see State
-  Column m_u, m_v;   ///< of all points, where there are images
+  Column m_state;   ///< [X | u] of all points
+  Column m_H, m_T;  ///< of all points, see State
+  Column m_v;       ///< of all points, with viscosity and images
   std::optional<particle::TangentAssembly> m_tangent;  ///< made when first asked for
-  std::vector<Index> m_bad;                            ///< first bad particle of each range
+  std::vector<Index> m_bad;                            ///< first bad particle of each block
 };
 
 }  // namespace concord::sph

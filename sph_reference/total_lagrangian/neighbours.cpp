@@ -1,143 +1,41 @@
 #include "sph_reference/total_lagrangian/neighbours.hpp"
 
 #include "scene/errors.hpp"
+#include "sph_reference/total_lagrangian/grid.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace concord::sph {
 namespace {
 
-/// Points by cells of edge >= R, so that neighbours lie in the 3^dim cells around.
-class Grid {
- public:
-  Grid(const Points& points, double R) : m_points(points), m_low(Vec3::Constant(1e300)) {
-    Vec3 high = Vec3::Constant(-1e300);
-    for (Index a = 0; a < points.count(); ++a) {
-      m_low = m_low.cwiseMin(points.position(a));
-      high = high.cwiseMax(points.position(a));
-    }
-    // Thin or scattered bodies: no more cells than points, so that memory stays linear.
-    m_edge = R;
-    while (cells_at(high, m_edge) > std::max<double>(64, points.count())) m_edge *= 1.26;
-    for (int i = 0; i < 3; ++i) m_cells[i] = extent(high, i, m_edge);
-    fill();
-  }
-
-  /// visit(b, X_b) for every point in the cells around X.
-  template <class Visit> void around(const Vec3& X, const Visit& visit) const {
-    const std::array<Index, 3> c = cell_of(X);
-    for (Index k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, m_cells[2] - 1); ++k) {
-      for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
-        const Index first = number({std::max(c[0] - 1, 0), j, k});
-        const Index last = number({std::min(c[0] + 1, m_cells[0] - 1), j, k});
-        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s)
-          visit(m_sorted[s], m_positions[s]);
-      }
-    }
-  }
-
- private:
-  Index extent(const Vec3& high, int i, double edge) const {
-    return static_cast<Index>((high[i] - m_low[i]) / edge) + 1;
-  }
-  double cells_at(const Vec3& high, double edge) const {
-    double count = 1;
-    for (int i = 0; i < 3; ++i) count *= std::floor((high[i] - m_low[i]) / edge) + 1;
-    return count;
-  }
-  std::array<Index, 3> cell_of(const Vec3& X) const {
-    std::array<Index, 3> c{};
-    for (int i = 0; i < 3; ++i) {
-      c[i] = std::min(static_cast<Index>((X[i] - m_low[i]) / m_edge), m_cells[i] - 1);
-    }
-    return c;
-  }
-  Index number(const std::array<Index, 3>& c) const {
-    return (c[2] * m_cells[1] + c[1]) * m_cells[0] + c[0];
-  }
-  void fill() {
-    m_begin.assign(static_cast<std::size_t>(m_cells[0]) * m_cells[1] * m_cells[2] + 1, 0);
-    std::vector<Index> cell(m_points.count());
-    for (Index a = 0; a < m_points.count(); ++a) {
-      cell[a] = number(cell_of(m_points.position(a)));
-      ++m_begin[cell[a] + 1];
-    }
-    for (std::size_t c = 1; c < m_begin.size(); ++c) m_begin[c] += m_begin[c - 1];
-    m_sorted.resize(m_points.count());
-    std::vector<Index> next(m_begin.begin(), m_begin.end() - 1);
-    m_positions.resize(m_points.count());
-    for (Index a = 0; a < m_points.count(); ++a) {
-      m_positions[next[cell[a]]] = m_points.position(a);
-      m_sorted[next[cell[a]]++] = a;
-    }
-  }
-
-  const Points& m_points;
-  Vec3 m_low;
-  double m_edge = 0;
-  std::array<Index, 3> m_cells{};
-  std::vector<Index> m_begin, m_sorted;  ///< points of cell c: m_sorted[m_begin[c]] ...
-  std::vector<Vec3> m_positions;         ///< beside m_sorted
+struct Candidate {
+  Index b;
+  double r2;  ///< |X_ab|^2
 };
 
-/// Appends the neighbours of particles [first, last) to `found`, sorted by number, and counts
-/// them in begin[a + 1]. A lattice has pairs at R itself, where W and W' vanish: round-off
-/// shall not decide whether they count. Nor does a particle count its image at its own place,
-/// to which X_ab = 0.
-void append_rows(const Points& points, const Grid& grid, double R, std::size_t first,
-                 std::size_t last, std::vector<std::size_t>& begin, std::vector<Index>& found) {
-  const double limit = R * R * (1 - 1e-10), same_place = 1e-20 * R * R;
-  for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-    const Vec3 X_a = points.position(a);
-    const std::size_t start = found.size();
-    grid.around(X_a, [&](Index b, const Vec3& X_b) {
-      const double r2 = (X_b - X_a).squaredNorm();
-      if (r2 < limit && b != a && (r2 > same_place || points.source(b) != a))
-        found.push_back(b);
-    });
-    std::sort(found.begin() + static_cast<std::ptrdiff_t>(start), found.end());
-    begin[a + 1] = found.size() - start;
-  }
-}
+/// A piece of the lists: whole rows, on one thread.
+struct Part {
+  std::vector<Index> other;
+  std::vector<double> weight, stiffness;
+  std::size_t directed = 0;
+  Index singular = -1;    ///< first particle whose neighbours do not span the space,
+  std::size_t found = 0;  ///< and their number
+  Index lowest = 0, highest = -1;
 
-void find_rows(const Points& points, const Kernel& kernel, const Executor& executor,
-               Neighbours& rows) {
-  const Body& body = points.body();
-  const Grid grid(points, kernel.radius());
-  rows.begin.assign(body.n + 1, 0);
-  std::vector<std::vector<Index>> found(Executor::pieces(body.n));
-  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    append_rows(points, grid, kernel.radius(), first, last, rows.begin,
-                found[first / Executor::piece]);
-  });
-  for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
-  rows.other.reserve(rows.count());
-  for (std::vector<Index>& part : found) {
-    rows.other.insert(rows.other.end(), part.begin(), part.end());
-    std::vector<Index>().swap(part);
+  void add(Index b, double c, double k, bool penalised) {
+    other.push_back(b);
+    weight.push_back(c);
+    if (penalised) stiffness.push_back(k);
   }
-}
+};
 
-/// K_a (TLS.4) of a row whose weights are there.
-Mat3 moment(const Points& points, const Neighbours& rows, Index a) {
-  Mat3 K = Mat3::Zero();
-  for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
-    const Vec3 X_ab = points.position(rows.other[k]) - points.position(a);
-    K += rows.weight[k] * X_ab * X_ab.transpose();
-  }
-  return K;
-}
-
-/// Inverts K_a into its padded columns; false if the neighbours do not span the space. 1e-8:
-/// half of the digits are lost.
-bool invert_moment(const Points& points, Neighbours& rows, Index a) {
-  const Body& body = points.body();
-  Mat3 K = moment(points, rows, a);
+/// Inverts V_a K_a into its padded columns; false if the neighbours do not span the space.
+/// 1e-8: half of the digits are lost.
+bool invert_moment(const Body& body, Mat3 K, double* p) {
   if (body.dim == 2)
     K(2, 2) =
         0.5 * K.trace();  // any value between the eigenvalues: leaves the plane's inverse alone
@@ -146,13 +44,85 @@ bool invert_moment(const Points& points, Neighbours& rows, Index a) {
   if (!(lambda[0] > 1e-8 * lambda[2])) return false;
   const Mat3 inverse = eigen.eigenvectors() * lambda.cwiseInverse().asDiagonal() *
                        eigen.eigenvectors().transpose();
-  double* p = &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
   for (int j = 0; j < body.dim; ++j) {
     for (int i = 0; i < body.dim; ++i)
       p[j * body.stride + i] = 0.5 * (inverse(i, j) + inverse(j, i));
   }
   return true;
 }
+
+class Search {
+ public:
+  Search(const Points& points, std::span<const double> V, const Kernel& kernel, double penalty)
+      : m_points(points), m_V(V), m_kernel(kernel), m_penalty(penalty),
+        m_grid(points, kernel.radius()) {}
+
+  /// Rows of particles [first, last), all of one block.
+  void find(Index first, Index last, Index block_begin, Index block_end, Neighbours& rows,
+            Part& part) const {
+    std::vector<Candidate> candidates;
+    part.lowest = first, part.highest = last - 1;
+    for (Index a = first; a < last; ++a) {
+      collect(a, candidates);
+      weigh(a, block_begin, block_end, candidates, rows, part);
+    }
+  }
+
+ private:
+  /// All neighbours of a, sorted by number. A lattice has pairs at R itself, where W and W'
+  /// vanish: round-off shall not decide whether they count. Nor does a particle count its image
+  /// at its own place, to which X_ab = 0.
+  void collect(Index a, std::vector<Candidate>& candidates) const {
+    const double R = m_kernel.radius();
+    const double limit = R * R * (1 - 1e-10), same_place = 1e-20 * R * R;
+    const Vec3 X_a = m_points.position(a);
+    candidates.clear();
+    m_grid.around(X_a, [&](Index b, const Vec3& X_b) {
+      const double r2 = (X_b - X_a).squaredNorm();
+      if (r2 < limit && b != a && (r2 > same_place || m_points.source(b) != a))
+        candidates.push_back({b, r2});
+    });
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Candidate& p, const Candidate& q) { return p.b < q.b; });
+  }
+
+  /// Sums V_a K_a over all neighbours of a, and enters those that belong to its row: first the
+  /// pairs within the block, then the others.
+  void weigh(Index a, Index block_begin, Index block_end,
+             const std::vector<Candidate>& candidates, Neighbours& rows, Part& part) const {
+    const Body& body = m_points.body();
+    const std::size_t start = part.other.size();
+    Mat3 K = Mat3::Zero();
+    for (const bool within : {true, false}) {
+      for (const auto& [b, r2] : candidates) {
+        if ((b >= block_begin && b < block_end) != within) continue;
+        const Index source = m_points.source(b);
+        const double areas = m_V[a] * m_V[source] / body.thickness, r = std::sqrt(r2);
+        const double c = areas * m_kernel.slope(r);
+        const Vec3 X_ab = m_points.position(b) - m_points.position(a);
+        K += c * X_ab * X_ab.transpose();
+        if (within && b < a) continue;
+        part.add(b, c, m_penalty > 0 ? m_penalty * areas * m_kernel.value(r) / r2 : 0,
+                 m_penalty > 0);
+        part.lowest = std::min(part.lowest, source);
+        part.highest = std::max(part.highest, source);
+      }
+      if (within) rows.cut[a] = part.other.size() - start;
+    }
+    rows.begin[a + 1] = part.other.size() - start;
+    part.directed += candidates.size();
+    double* inverse =
+        &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
+    if (!invert_moment(body, K, inverse) && part.singular < 0)
+      part.singular = a, part.found = candidates.size();
+  }
+
+  const Points& m_points;
+  std::span<const double> m_V;
+  const Kernel& m_kernel;
+  double m_penalty;
+  Grid m_grid;
+};
 
 [[noreturn]] void throw_too_few(const Body& body, const Kernel& kernel, Index a,
                                 std::size_t count) {
@@ -167,34 +137,115 @@ bool invert_moment(const Points& points, Neighbours& rows, Index a) {
                    "(2 spacings serve on most arrangements)");
 }
 
+/// Particles that one thread searches for at a time; pieces do not straddle blocks.
+constexpr Index search_piece = 2048;
+struct Piece {
+  Index first, last;
+  std::size_t block;
+};
+
+std::vector<Piece> pieces_of(const std::vector<Index>& blocks) {
+  std::vector<Piece> pieces;
+  for (std::size_t block = 0; block + 1 < blocks.size(); ++block) {
+    for (Index first = blocks[block]; first < blocks[block + 1]; first += search_piece)
+      pieces.push_back({first, std::min(first + search_piece, blocks[block + 1]), block});
+  }
+  return pieces;
+}
+
+/// Joins the parts, and turns counts into places.
+void join(const std::vector<Piece>& pieces, std::vector<Part>& parts, bool penalised,
+          Neighbours& rows) {
+  for (std::size_t a = 0; a + 1 < rows.begin.size(); ++a) {
+    rows.cut[a] += rows.begin[a];
+    rows.begin[a + 1] += rows.begin[a];
+  }
+  const std::size_t count = rows.begin.back();
+  rows.other.reserve(count);
+  rows.weight.reserve(count + Neighbours::padding);
+  if (penalised) rows.stiffness.reserve(count + Neighbours::padding);
+  rows.lowest.assign(rows.blocks.begin(), rows.blocks.end() - 1);
+  rows.highest = rows.lowest;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Part part = std::move(parts[i]);  // freed at the end of this turn
+    rows.other.insert(rows.other.end(), part.other.begin(), part.other.end());
+    rows.weight.insert(rows.weight.end(), part.weight.begin(), part.weight.end());
+    rows.stiffness.insert(rows.stiffness.end(), part.stiffness.begin(), part.stiffness.end());
+    rows.directed += part.directed;
+    Index& lowest = rows.lowest[pieces[i].block];
+    Index& highest = rows.highest[pieces[i].block];
+    lowest = std::min(lowest, part.lowest), highest = std::max(highest, part.highest);
+  }
+  rows.weight.resize(count + Neighbours::padding, 0.0);
+  if (penalised) rows.stiffness.resize(count + Neighbours::padding, 0.0);
+}
+
 }  // namespace
+
+std::vector<Index> blocks_of(const Body& body, double R) {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (Index a = 0; a < body.n; ++a) {
+    low = low.cwiseMin(body.position(a));
+    high = high.cwiseMax(body.position(a));
+  }
+  const double thick = (high - low).maxCoeff() / (2 * R);
+  Index count = static_cast<Index>(std::min({64.0, thick, body.n / 512.0}));
+  count = std::max<Index>(1, count - count % 2);
+  std::vector<Index> begin(count + 1);
+  for (Index k = 0; k <= count; ++k)
+    begin[k] = static_cast<Index>(static_cast<std::int64_t>(body.n) * k / count);
+  return begin;
+}
 
 Neighbours find_neighbours(const Points& points, std::span<const double> V,
                            const Kernel& kernel, double penalty, const Executor& executor) {
   const Body& body = points.body();
   Neighbours rows;
-  find_rows(points, kernel, executor, rows);
-  rows.weight.assign(rows.count() + Neighbours::padding, 0.0);
-  rows.stiffness.assign(penalty > 0 ? rows.count() + Neighbours::padding : 0, 0.0);
+  rows.blocks = blocks_of(body, kernel.radius());
+  rows.begin.assign(body.n + 1, 0);
+  rows.cut.assign(body.n, 0);
   rows.inverse_moment.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
-  std::vector<Index> singular(Executor::pieces(body.n), -1);
-  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    for (auto a = static_cast<Index>(first); a < static_cast<Index>(last); ++a) {
-      for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
-        const Index b = rows.other[k];
-        const double r = (points.position(b) - points.position(a)).norm();
-        const double A_b = V[points.source(b)] / body.thickness;
-        rows.weight[k] = A_b * kernel.slope(r);
-        if (penalty > 0) rows.stiffness[k] = penalty * A_b * kernel.value(r) / (r * r);
-      }
-      Index& bad = singular[first / Executor::piece];
-      if (!invert_moment(points, rows, a) && bad < 0) bad = a;
-    }
+  const Search search(points, V, kernel, penalty);
+  const std::vector<Piece> pieces = pieces_of(rows.blocks);
+  std::vector<Part> parts(pieces.size());
+  executor.for_each(pieces.size(), [&](std::size_t i) {
+    const auto& [first, last, block] = pieces[i];
+    search.find(first, last, rows.blocks[block], rows.blocks[block + 1], rows, parts[i]);
   });
-  for (const Index a : singular) {
-    if (a >= 0) throw_too_few(body, kernel, a, rows.begin[a + 1] - rows.begin[a]);
+  for (const Part& part : parts) {
+    if (part.singular >= 0) throw_too_few(body, kernel, part.singular, part.found);
   }
+  join(pieces, parts, penalty > 0, rows);
   return rows;
+}
+
+DirectedRows directed_rows(const Neighbours& rows) {
+  const auto n = static_cast<Index>(rows.cut.size());
+  DirectedRows all;
+  all.begin.assign(n + 1, 0);
+  for (Index a = 0; a < n; ++a) {
+    all.begin[a + 1] += rows.begin[a + 1] - rows.begin[a];
+    for (std::size_t k = rows.begin[a]; k < rows.cut[a]; ++k) ++all.begin[rows.other[k] + 1];
+  }
+  for (Index a = 0; a < n; ++a) all.begin[a + 1] += all.begin[a];
+  std::vector<std::pair<Index, std::size_t>> entries(all.begin.back());
+  std::vector<std::size_t> next(all.begin.begin(), all.begin.end() - 1);
+  for (Index a = 0; a < n; ++a) {
+    for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
+      entries[next[a]++] = {rows.other[k], k};
+      if (k < rows.cut[a]) entries[next[rows.other[k]]++] = {a, k};
+    }
+  }
+  all.other.reserve(entries.size()), all.entry.reserve(entries.size());
+  for (Index a = 0; a < n; ++a) {
+    std::sort(entries.begin() + static_cast<std::ptrdiff_t>(all.begin[a]),
+              entries.begin() + static_cast<std::ptrdiff_t>(all.begin[a + 1]));
+    for (std::size_t k = all.begin[a]; k < all.begin[a + 1]; ++k) {
+      all.other.push_back(entries[k].first);
+      all.entry.push_back(entries[k].second);
+    }
+  }
+  return all;
 }
 
 }  // namespace concord::sph

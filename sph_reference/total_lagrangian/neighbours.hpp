@@ -10,30 +10,48 @@
 
 namespace concord::sph {
 
-/// Directed neighbours in rows: each particle lists all b != a with |X_ab| < R, sorted by
-/// number. A pair stands in two rows, so that every particle sums its own forces and threads
-/// never write to the same place. Images (Points) are neighbours like others and have no rows;
-/// a particle's image at its own place is none.
+/// Every pair of particles with |X_ab| < R, once: particles are cut into blocks, and a pair
+/// within a block stands in the row of its lower particle, for both of them. A pair of two
+/// blocks stands in both rows, for the particle of the row alone, and so does a particle with
+/// an image (Points): a block's loops write to its own particles only. Rows are sorted by
+/// number, pairs for both first. A particle's image at its own place is no neighbour.
 struct Neighbours {
+  std::vector<Index> blocks;       ///< block k: particles [blocks[k], blocks[k+1])
   std::vector<std::size_t> begin;  ///< row of a: [begin[a], begin[a+1])
+  std::vector<std::size_t> cut;    ///< entries [begin[a], cut[a]) count for b as well
   std::vector<Index> other;        ///< b
-  Column weight;     ///< w_ab = A_b (-W'(R_ab)/R_ab) [1/m^2], A_b = V_b / thickness (TLS.3)
-  Column stiffness;  ///< kappa_ab = psi E A_b W(R_ab) / R_ab^2 [N/m^4] (TLS.9); empty without
-                     ///< penalty
-  Column inverse_moment;  ///< K_a^-1 [m^2]: K_a = sum_b w_ab X_ab (x) X_ab (TLS.4), dim padded
-                          ///< columns
+  Column weight;                   ///< c_ab = V_a w_ab [m], symmetric in a and b (TLS.3)
+  Column stiffness;                ///< k_ab [N/m], symmetric (TLS.9); empty without penalty
+  Column inverse_moment;           ///< (V_a K_a)^-1 [1/m^3] (TLS.4), dim padded columns
+  std::size_t directed = 0;        ///< sum over the particles of their neighbours
+  std::vector<Index> lowest;  ///< lowest and highest particle among the neighbours of a block
+  std::vector<Index> highest;
 
   /// Zeros behind `weight` and `stiffness`, so that a vector may be loaded from the last row's
   /// end.
   static constexpr std::size_t padding = 3;
-  std::size_t count() const { return begin.back(); }
 };
 
+/// The same as rows of all neighbours of each particle, sorted by number; for what is done
+/// rarely.
+struct DirectedRows {
+  std::vector<std::size_t> begin;  ///< row of a: [begin[a], begin[a+1])
+  std::vector<Index> other;
+  std::vector<std::size_t> entry;  ///< where the pair stands in Neighbours
+};
+DirectedRows directed_rows(const Neighbours& rows);
+
 /// Finds all pairs closer than the kernel's support with a grid of cells, in time linear in n,
-/// and weighs them. V: volumes of the particles, with thickness [m^3]; penalty: psi E [Pa]; 0
-/// leaves `stiffness` empty. Throws InputError (key tlsph.support) where neighbours do not span
-/// the space, so that K_a has no inverse: the support must grow.
+/// and weighs them; blocks as blocks_of() cuts them. V: volumes of the particles, with
+/// thickness [m^3]; penalty: psi E [Pa]; 0 leaves `stiffness` empty. Throws InputError (key
+/// tlsph.support) where neighbours do not span the space, so that K_a has no inverse: the
+/// support must grow.
 Neighbours find_neighbours(const Points& points, std::span<const double> V,
                            const Kernel& kernel, double penalty, const Executor& executor);
+
+/// Contiguous ranges of particles, the same for every number of threads: at least 2 R thick
+/// along the body's longest axis, where particles in sweep order (Body) make a fifth more
+/// entries than there are pairs, at least 512 particles, an even number of them, at most 64.
+std::vector<Index> blocks_of(const Body& body, double R);
 
 }  // namespace concord::sph

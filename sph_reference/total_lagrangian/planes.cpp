@@ -154,16 +154,45 @@ const double* Points::extend(std::span<const double> values, Column& extended,
   return extended.data();
 }
 
-void Points::reflect_records(double* records, const Executor& executor) const {
-  if (m_images.empty()) return;
-  const std::size_t stride = m_body->stride, dim = m_body->dim, size = 2 * dim * stride;
+Column Points::make_points() const {
+  const std::size_t stride = m_body->stride;
+  Column points(2 * stride * static_cast<std::size_t>(count()), 0.0);
+  for (Index b = 0; b < count(); ++b)
+    std::copy_n(positions() + b * stride, stride, points.begin() + 2 * stride * b);
+  return points;
+}
+
+void Points::set_displacements(std::span<const double> u, Index first, Index last,
+                               Column& points) const {
+  const std::size_t stride = m_body->stride;
+  for (std::size_t a = first; a < static_cast<std::size_t>(last); ++a) {
+    for (std::size_t i = 0; i < stride; ++i)
+      points[(2 * a + 1) * stride + i] = u[a * stride + i];
+  }
+}
+
+void Points::set_image_displacements(std::span<const double> u, Column& points,
+                                     const Executor& executor) const {
+  const std::size_t stride = m_body->stride;
   executor.for_pieces(m_images.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
       const Map& map = m_maps[m_images[k].map];
-      const double* from = records + m_images[k].of * size;
-      double* to = records + (m_body->n + k) * size;
-      for (std::size_t column = 0; column < 2 * dim; ++column, from += stride, to += stride) {
-        const double sign = map.sign * map.R[column / 2];
+      const double* from = u.data() + m_images[k].of * stride;
+      double* to = &points[(2 * (m_body->n + k) + 1) * stride];
+      for (std::size_t i = 0; i < stride; ++i) to[i] = map.sign * map.R[i] * from[i];
+    }
+  });
+}
+
+void Points::reflect_tensors(Column& tensors, const Executor& executor) const {
+  const std::size_t stride = m_body->stride, dim = m_body->dim, size = dim * stride;
+  executor.for_pieces(m_images.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      const Map& map = m_maps[m_images[k].map];
+      const double* from = &tensors[m_images[k].of * size];
+      double* to = &tensors[(m_body->n + k) * size];
+      for (std::size_t column = 0; column < dim; ++column, from += stride, to += stride) {
+        const double sign = map.sign * map.R[column];
         for (std::size_t i = 0; i < stride; ++i) to[i] = sign * map.R[i] * from[i];
       }
     }

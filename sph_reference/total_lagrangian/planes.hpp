@@ -59,9 +59,16 @@ class Points {
   /// `extended` with values copied and u' = S u behind them.
   const double* extend(std::span<const double> values, Column& extended,
                        const Executor& executor) const;
-  /// Sets the images' records [T_k | H_k] (State) from the particles': T' = S T R, H' = S H R
-  /// (TLS.15).
-  void reflect_records(double* records, const Executor& executor) const;
+  /// Points [X | u] with u = 0; set_displacements() keeps X.
+  Column make_points() const;
+  /// u of particles [first, last) into the points.
+  void set_displacements(std::span<const double> u, Index first, Index last,
+                         Column& points) const;
+  /// u' = S u of all images.
+  void set_image_displacements(std::span<const double> u, Column& points,
+                               const Executor& executor) const;
+  /// Sets the images' tensors from the particles': T' = S T R, H' = S H R (TLS.15).
+  void reflect_tensors(Column& tensors, const Executor& executor) const;
 
  private:
   /// X' = R X + t, S = sign R; a fourth lane for padding.

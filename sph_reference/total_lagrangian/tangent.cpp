@@ -6,12 +6,13 @@
 namespace concord::sph {
 namespace {
 
-/// g_ab = w_ab K_a^-1 X_ab (TLS.5).
+/// g_ab = c_ab (V_a K_a)^-1 X_ab (TLS.5).
 particle::GradientRows gradient_rows(const Body& body, const Neighbours& rows) {
   particle::GradientRows g;
-  g.begin = rows.begin;
-  g.neighbour = rows.other;
-  g.g.resize(rows.count());
+  DirectedRows all = directed_rows(rows);
+  g.begin = std::move(all.begin);
+  g.neighbour = std::move(all.other);
+  g.g.resize(g.neighbour.size());
   for (Index a = 0; a < body.n; ++a) {
     const double* K =
         &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
@@ -19,8 +20,9 @@ particle::GradientRows gradient_rows(const Body& body, const Neighbours& rows) {
     for (int j = 0; j < body.dim; ++j) {
       for (int i = 0; i < body.dim; ++i) inverse(i, j) = K[j * body.stride + i];
     }
-    for (std::size_t k = rows.begin[a]; k < rows.begin[a + 1]; ++k) {
-      g.g[k] = rows.weight[k] * (inverse * (body.position(rows.other[k]) - body.position(a)));
+    for (std::size_t k = g.begin[a]; k < g.begin[a + 1]; ++k) {
+      const Vec3 X_ab = body.position(g.neighbour[k]) - body.position(a);
+      g.g[k] = rows.weight[all.entry[k]] * (inverse * X_ab);
     }
   }
   return g;
@@ -58,14 +60,13 @@ const particle::ForceModel::Stiffness& TotalLagrangianSph::tangent(std::span<con
 
   std::vector<particle::PairTangent> pairs;
   const bool penalised = penalty() != PenaltyForm::none;
-  if (penalised) pairs.reserve(m_rows.count() / 2);
+  if (penalised) pairs.reserve(m_rows.directed / 2);
   for (Index a = 0; penalised && a < m_body.n; ++a) {
     for (std::size_t i = m_rows.begin[a]; i < m_rows.begin[a + 1]; ++i) {
       const Index b = m_rows.other[i];
       if (b < a) continue;
-      const double k = m_body.V[a] * m_rows.stiffness[i];
-      const Vec3 X_ab = m_body.position(b) - m_body.position(a),
-                 l = local_displacement(u.data(), a, b);
+      const double k = m_rows.stiffness[i];
+      const Vec3 X_ab = m_body.position(b) - m_body.position(a), l = local_displacement(a, b);
       const Vec3 x_ab = l + X_ab + 0.5 * (plane_gradient(a) + plane_gradient(b)) * X_ab;
       particle::PairTangent pair = penalty() == PenaltyForm::potential
                                        ? potential_pair(k)

@@ -24,7 +24,9 @@ TEST(Neighbours, AreAllPairsWithinTheSupport) {
   for (const int dim : {2, 3}) {
     const Body body = lattice(dim, dim == 3 ? 7 : 15, 0.25);
     const Kernel kernel(KernelShape::cubic_spline, dim, 0.23);
-    const Neighbours rows = find_neighbours(body, body.V, kernel, 1, Executor(2));
+    const Neighbours lists = find_neighbours(body, body.V, kernel, 1, Executor(2));
+    const DirectedRows rows = directed_rows(lists);
+    EXPECT_EQ(lists.directed, rows.other.size());
     for (Index a = 0; a < body.n; ++a) {
       std::vector<Index> expected;
       for (Index b = 0; b < body.n; ++b) {
@@ -182,9 +184,9 @@ TEST(State, TurnedInsideOutIsReportedWithItsLowestParticle) {
   Column u(body.X.size(), 0.0);
   u[4 * 100] = std::nan("");
   std::vector<Index> touched{100};
-  for (std::size_t k = model.neighbours().begin[100]; k < model.neighbours().begin[101]; ++k) {
-    touched.push_back(model.neighbours().other[k]);
-  }
+  const DirectedRows rows = directed_rows(model.neighbours());
+  for (std::size_t k = rows.begin[100]; k < rows.begin[101]; ++k)
+    touched.push_back(rows.other[k]);
   try {
     model.forces(u, {}, f, one_thread);
     FAIL() << "no error";
@@ -199,9 +201,12 @@ TEST(InstructionSets, AgreeToRoundOff) {
       body, body.V, Kernel(KernelShape::cubic_spline, 3, 0.24), 1e6, one_thread);
   const Column u = random_column(body, 0.004, 1), v = random_column(body, 10, 2);
   const auto run = [&](Isa isa, PenaltyForm penalty) {
-    Column records(static_cast<std::size_t>(body.n) * 24, 0.0), f(u.size(), 0.0);
-    const State s{body.X.data(), u.data(), v.data(), body.V.data(), records.data(), f.data()};
+    const Points all(body);
+    Column points = all.make_points(), H(3 * u.size()), T(3 * u.size()), f(u.size());
+    all.set_displacements(u, 0, body.n, points);
+    const State s{points.data(), v.data(), body.V.data(), H.data(), T.data(), f.data()};
     const Loops loops = choose_loops(3, StressLaw::neo_hookean, penalty, true, isa);
+    EXPECT_EQ(rows.blocks, (std::vector<Index>{0, body.n}));
     loops.gradients(rows, 0, body.n, s);
     EXPECT_EQ(loops.stresses(rows, 0, body.n, {9e6, 6e6}, s), -1);
     loops.forces(rows, 0, body.n, {1e3, 1, 1e-4}, s);
