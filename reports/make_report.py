@@ -26,7 +26,7 @@ def make(studies_folder, out, cache_folder=None):
     studies, warnings = load_studies(studies_folder)
     out.mkdir(parents=True, exist_ok=True)
     store = Cache(cache_folder or out / ".cache")
-    html = page.build(studies, store, warnings)
+    html = page.build(studies, store, warnings, out)
     _write(out / "index.html", html)
     _write(out / "summary.md", outputs.summary(studies, warnings))
     _write(out / "junit.xml", outputs.junit(studies))

@@ -52,6 +52,7 @@ class Case:
     index: int
     style: int
     label: str
+    probe: str = ""
     levels: list = field(default_factory=list)
 
     def has(self, path):
@@ -66,18 +67,20 @@ def cases_of(study):
     """The study's cases in the order of their first row; levels from coarse to fine."""
     grouped = {}
     for row in study.rows:
-        key = (row.get("scene") or "", row["method"], row.get("variant") or "")
+        key = (row.get("scene") or "", row["method"], row.get("variant") or "", row.get("probe") or "")
         grouped.setdefault(key, []).append(row)
     several_scenes = len({key[0] for key in grouped}) > 1
     cases, per_method = [], {}
     for key, rows in grouped.items():
-        scene, method, variant = key
+        scene, method, variant, probe = key
         styles = per_method.setdefault(method, {})
         style = styles.setdefault((variant, scene), len(styles))
         label = " ".join(filter(None, (method_name(method), variant_text(variant))))
         if several_scenes and scene:
             label += ", " + scene.replace("_", " ")
-        cases.append(Case(scene, method, variant, len(cases), style, label, _levels(rows)))
+        if probe:
+            label += ", " + probe.replace("_", " ")
+        cases.append(Case(scene, method, variant, len(cases), style, label, probe, _levels(rows)))
     return cases
 
 
@@ -137,4 +140,4 @@ def chosen(cases, wanted):
         if want is None or want == "" or want == []:
             return True
         return getattr(case, key) in (want if isinstance(want, list) else [want])
-    return [c for c in cases if all(fits(c, k) for k in ("scene", "method", "variant"))]
+    return [c for c in cases if all(fits(c, k) for k in ("scene", "method", "variant", "probe"))]

@@ -8,7 +8,7 @@ matplotlib.use("svg")
 from matplotlib.figure import Figure  # noqa: E402  (after the choice of back end)
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter  # noqa: E402
 
-from . import draw_inset, draw_labels, draw_map, draw_triangles, svg  # noqa: E402
+from . import draw_front, draw_inset, draw_labels, draw_map, draw_triangles, svg  # noqa: E402
 from .balance import SIGN  # noqa: E402
 from .digits import SUPERSCRIPTS, exact, pretty, ticks  # noqa: E402
 from .palette import ROLES, colour, dash, hollow, marker  # noqa: E402
@@ -60,7 +60,10 @@ def draw(spec):
         draw_inset.draw(axes, curves, spec["inset"], lines)
     if labelled:
         _labels(axes, curves, legend)
-    return svg.fragment(figure, spec["ident"], spec["alt"])
+    if spec.get("front"):
+        draw_front.draw(axes, spec["front"])
+    tips = draw_front.tips(axes, [c for c in curves if c.get("tips")])
+    return svg.fragment(figure, spec["ident"], spec["alt"], tips)
 
 
 def lines(axes, curves):
@@ -133,7 +136,7 @@ def _frame(axes, spec, curves):
     axes.tick_params(length=3.5, width=0.8)
     axes.tick_params(which="minor", length=2, width=0.6)
     axes.set_xlabel(spec["xlabel"], labelpad=6)
-    x = [v for c in curves for v in c["x"]]
+    x = [v for c in curves for v in c["x"] + c.get("left", []) + c.get("right", [])]
     y = [v for c in curves for v in c["y"] + (c["low"] or []) + (c["high"] or [])]
     if spec.get("from_zero") and spec["scales"][1] == "linear":
         y.append(0.0)
@@ -209,7 +212,7 @@ def _stroke(curve, sample=False):
             "alpha": (1 if rank == 0 else max(0.35, 0.75 - 0.18 * rank)) * curve.get("fade", 1)}
     if curve.get("reference"):
         look |= {"linewidth": 4.2, "alpha": 0.4}
-    if "marks" in curve:
+    if "marks" in curve or sample and not _long(curve):
         look |= {"marker": marker(curve["style"]), "markersize": 5, "markeredgewidth": 1.1, "markeredgecolor": hue,
                  "markerfacecolor": PAPER if hollow(curve["style"]) else hue}
         if not sample:
@@ -237,6 +240,9 @@ def _line(axes, curve, number, long):
     if curve["low"] and curve["low"] != curve["high"]:
         bars = axes.vlines(x, curve["low"], curve["high"], color=hue, linewidth=3.4, alpha=0.33, zorder=2)
         bars.set_gid(f"curve:{curve['case']}:{number}s")
+    if curve.get("left") and curve["left"] != curve["right"]:
+        bars = axes.hlines(y, curve["left"], curve["right"], color=hue, linewidth=3.4, alpha=0.33, zorder=2)
+        bars.set_gid(f"curve:{curve['case']}:{number}w")
 
 
 def _baseline(axes, curve, number):

@@ -28,7 +28,7 @@ class Study:
         return self.data.get(key) or []
 
 
-LISTS = ("claims", "rows", "fits", "references", "plots", "pictures")
+LISTS = ("claims", "rows", "fits", "references", "plots", "pictures", "matched", "heatmap")
 TEXTS = ("name", "title", "question", "source", "paper_statement", "mode", "verdict")
 VERDICTS = ("pass", "fail")
 

@@ -4,6 +4,7 @@ import json
 import math
 import xml.etree.ElementTree as ET
 
+from .balance import SIGN
 from .claims import bound_text, measured_text, source_text
 from .digits import DASH, pretty
 from .loading import study_verdict, verdict
@@ -51,7 +52,7 @@ def summary(studies, warnings):
     for study in studies:
         lines += [f"## {study.title}: {MARKS[study_verdict(study)]}", ""]
         lines += [*_claims([(study, c) for c in study.claims]), ""] if study.claims else ["No claims.", ""]
-        lines += _fits(study)
+        lines += [*_fits(study), *_found(study)]
     if warnings:
         lines += ["## Remarks", "", *[f"- {_cell(w)}" for w in warnings], ""]
     return "\n".join(lines)
@@ -76,6 +77,23 @@ def _fits(study):
         out.append("| " + " | ".join(map(_cell, (who, fit.get("quantity") or DASH, pretty(fit.get("slope")),
                                                  pretty(fit.get("r2"), 4)))) + " |")
     return out + [""]
+
+
+def _found(study):
+    """What is fastest at one error, and the heat maps."""
+    out = [f"- {_cell(words)}" for entry in study.listed("matched") for words in entry.get("sentences") or []]
+    out += [""] if out else []
+    for entry in study.listed("heatmap"):
+        columns = [c.get("label") or c.get("method") or "" for c in entry.get("columns") or []]
+        out += [f"| {_cell(entry.get('title') or 'heat map')} | " + " | ".join(map(_cell, columns)) + " |",
+                "|---|" + "---:|" * len(columns)]
+        for row in entry.get("rows") or []:
+            unit = f" [{row['unit']}]" if row.get("unit") not in ("", "1", None) else ""
+            cells = [pretty(c.get("value"), int(row.get("digits") or 3))
+                     + (f" {SIGN}" if c.get("balance") == "does not close" else "") for c in row.get("cells") or []]
+            out.append(f"| {_cell(row.get('label') or '')}{unit} | " + " | ".join(cells) + " |")
+        out.append("")
+    return out
 
 
 def junit(studies):

@@ -4,7 +4,8 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import balance, captions, claims, histories, outputs, pictures, plots, quantities, tables
+from . import (balance, captions, claims, fronts, heatmaps, histories, matched, outputs, pictures, plots, quantities,
+               signals, tables)
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
 from .palette import css_variables, method_name, swatch
@@ -93,12 +94,12 @@ def _tables(study, cases):
         return " ".join(filter(None, (method_name(entry.get("method") or ""),
                                       variant_text(entry.get("variant") or ""))))
     made = [tables.convergence_table(study, cases, q) for q in tables.quantities_with_levels(study)]
-    made += [tables.results_table(study, cases), tables.invariants_table(cases),
+    made += [signals.signals_table(cases), tables.results_table(study, cases), tables.invariants_table(cases),
              tables.references_table(study, label)]
     return [t for t in made if t]
 
 
-def _study_view(study, cases, jobs, store, warnings):
+def _study_view(study, cases, jobs, store, warnings, out):
     drawn = _plots(study, cases, store, warnings)
     groups, missing = _pictures(jobs, study.title)
     shown = {int(k) for p in drawn if "svg" in p for k in re.findall(r'data-case="(\d+)"', p["svg"])}
@@ -110,9 +111,10 @@ def _study_view(study, cases, jobs, store, warnings):
         "claims": sorted(map(_claim_view, study.claims), key=lambda c: c["verdict"] != "fail"), "plots": drawn,
         "key": [{"case": c.index, "label": c.label, "swatch": swatch(c.method, c.style)}
                 for c in cases if c.index in shown],
+        "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": matched.tables_of(study, cases),
         "groups": groups, "missing": missing, "tables": _tables(study, cases),
         "runs": tables.runs_table(cases), "run_count": len(study.rows),
-        "fem": any(c.method == "fem" for c in cases),
+        "fem": fronts.fem_note(cases),
     }
 
 
@@ -140,8 +142,8 @@ def _newest(studies):
     return datetime.fromtimestamp(max(times), timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
 
 
-def build(studies, store, warnings):
-    """The page as text. Adds to `warnings` what could not be shown."""
+def build(studies, store, warnings, out=None):
+    """The page as text. Adds to `warnings` what could not be shown. `out` is the page's folder, for links."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
     ordered = [(s, cases_of(s)) for s in studies]
     for study, cases in ordered:
@@ -149,7 +151,7 @@ def build(studies, store, warnings):
         warnings += _failed_runs(study, cases)
     jobs = {s.name: pictures.prepare(s, c, store, warnings) for s, c in ordered}
     pictures.render_missing([j for js in jobs.values() for j in js], store, warnings)
-    views = [_study_view(s, c, jobs[s.name], store, warnings) for s, c in ordered]
+    views = [_study_view(s, c, jobs[s.name], store, warnings, out) for s, c in ordered]
     for view in views:
         same = [v for v in views if v["id"] == view["id"]]
         for number, twin in enumerate(same[1:], 2):

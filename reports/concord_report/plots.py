@@ -5,6 +5,7 @@ import json
 
 from . import balance, cache
 from . import curves as _curves  # noqa: F401  (registers its kinds)
+from . import fronts as _fronts  # noqa: F401
 from . import sweeps as _sweeps  # noqa: F401
 from . import timelines as _timelines  # noqa: F401
 from .cases import chosen, fit_of
@@ -16,7 +17,7 @@ from .quantities import axis, name_and_unit
 
 __all__ = ["convergence", "cost", "drawn", "plot_specs", "setting_of"]
 DIRECT = 9  # at most so many curves are labelled at their ends; the page's key names all
-MODULES = ("draw", "draw_labels", "draw_triangles", "draw_map", "draw_inset", "svg", "palette", "digits")
+MODULES = ("draw", "draw_labels", "draw_triangles", "draw_map", "draw_inset", "draw_front", "svg", "palette", "digits")
 
 
 def _against(study, cases, plot, abscissa):

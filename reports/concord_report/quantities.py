@@ -57,6 +57,11 @@ def learn(header):
                 break
 
 
+def learned_unit(column):
+    """Of a column of history.csv, named with or without its unit's ending."""
+    return name_and_unit(f"quantities.{column}")[1]
+
+
 def name_and_unit(path):
     """("tip z", "m") for "quantities.tip_z_m"; the unit is empty when there is none or unknown."""
     last = path.split(".")[-1]
@@ -66,14 +71,15 @@ def name_and_unit(path):
     if compared:  # by [[compare]] of a study: errors.FIELD_NAME
         name = last.removeprefix(compared + "_")
         return (f"relative L2 difference of {FIELDS[compared][0]}"
-                + ("" if name == "difference" else f", {_words(name)}"), "")
+                + ("" if name == "difference" else f", {words(name)}"), "")
     for end, unit in UNITS:
         if last.endswith(end) and len(last) > len(end):
-            return _words(last[: -len(end)]), unit
-    return _words(last), SEEN.get(last, "") if path.startswith("quantities.") else ""
+            return words(last[: -len(end)]), unit
+    return words(last), SEEN.get(last, "") if path.startswith("quantities.") else ""
 
 
-def _words(name):
+def words(name):
+    """"tip_peak" -> "tip peak", "psi" -> "ψ"."""
     return " ".join(GREEK.get(word, word) for word in re.split(r"[_\s]+", name) if word)
 
 
@@ -85,12 +91,12 @@ def axis(path):
 
 def field_name(color):
     """(text, unit) of a point field; "displacement_z" is the component of "displacement"."""
-    for end, words in (("_difference", "difference in {}"), ("_reference", "{} of the reference")):
+    for end, told in (("_difference", "difference in {}"), ("_reference", "{} of the reference")):
         if color.endswith(end):
             name, unit = field_name(color.removesuffix(end))
-            return words.format(name), unit
+            return told.format(name), unit
     base, component = split_component(color)
-    name, unit = FIELDS.get(base, (_words(base), ""))
+    name, unit = FIELDS.get(base, (words(base), ""))
     return (f"{name}, {'xyz'[component]}" if component is not None else name), unit
 
 

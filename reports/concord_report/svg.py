@@ -10,15 +10,16 @@ from .palette import replacements
 FONT = "var(--sans)"
 
 
-def fragment(figure, ident, alt):
+def fragment(figure, ident, alt, tips=()):
     """The figure as an <svg> element. `ident` goes before every id; artists whose gid is
-    "curve:KEY:..." become class="curve" data-case="KEY"."""
+    "curve:KEY:..." become class="curve" data-case="KEY", and those called "tip:N" show tips[N]."""
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     text = stream.getvalue()
     text = text[text.index("<svg"):]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.S)
     text = re.sub(r"<!--.*?-->\s*", "", text, flags=re.S)
+    text = re.sub(r'<g id="tip:(\d+)">', lambda m: f'<g class="tip"><title>{html.escape(tips[int(m[1])])}</title>', text)
     text = _own_ids(text, ident)
     text = _page_style(text)
     view = re.search(r'viewBox="([^"]+)"', text)[1]
@@ -31,6 +32,7 @@ def fragment(figure, ident, alt):
 
 def _own_ids(text, ident):
     text = re.sub(r'<g id="curve:(-?\d+):[^"]*">', r'<g class="curve" data-case="\1">', text)
+    text = re.sub(r'<g id="(front|rings)">', r'<g class="\1">', text)
     used = set(re.findall(r'(?:url\(#|href="#)([^")]+)', text))
     text = re.sub(r' id="([^"]+)"', lambda m: f' id="{ident}-{m[1]}"' if m[1] in used else "", text)
     text = re.sub(r'url\(#([^)]+)\)', rf"url(#{ident}-\1)", text)

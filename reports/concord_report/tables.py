@@ -121,14 +121,16 @@ def _typical(level, path):
 
 def results_table(study, cases):
     """What claims ask of runs and no convergence table shows for all of them: mean and spread a level."""
+    signals = {f"errors.{name}" for c in cases for r in c.rows for name in (r.get("error_sources") or {})}
     shown = [q for q in quantities_with_levels(study)  # and of every case: a ladder or nothing
              if not any(_measured(c, q) > 1 for c in cases) or all(_measured(c, q) != 1 for c in cases)]
     paths = []
     for claim in study.claims:
         path = claim.get("quantity")
-        if path and path not in shown and path not in paths:
+        told = path in signals or str(path).startswith("signals.")  # by signals.py
+        if path and path not in shown and path not in paths and not told:
             paths.append(path)
-    if not paths and not shown:
+    if not paths and not shown and not signals:
         found = {f"{group}.{key}" for c in cases for r in c.rows for group in ("errors", "quantities")
                  for key in (r.get(group) or {})}
         paths = sorted(found)[:8]

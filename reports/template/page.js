@@ -58,6 +58,30 @@
     });
   });
 
+  // A link to evidence that is folded up unfolds it.
+  function unfold() {
+    var target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    for (var part = target; part; part = part.parentElement) if (part.tagName === "DETAILS") part.open = true;
+    if (target) target.scrollIntoView();
+  }
+  window.addEventListener("hashchange", unfold);
+  if (location.hash) unfold();
+
+  document.querySelectorAll(".command").forEach(function (command) {
+    var button = document.createElement("button");
+    button.type = "button";
+    button.textContent = "Copy";
+    button.addEventListener("click", function () {
+      var code = command.querySelector("code");
+      getSelection().selectAllChildren(code);
+      var done = function () { button.textContent = "Copied"; };
+      if (navigator.clipboard) navigator.clipboard.writeText(code.textContent).then(done, function () {});
+      else if (document.execCommand("copy")) done();
+      setTimeout(function () { button.textContent = "Copy"; }, 2000);
+    });
+    command.appendChild(button);
+  });
+
   if ("IntersectionObserver" in window) {
     var links = {};
     document.querySelectorAll(".contents a").forEach(function (a) { links[a.hash.slice(1)] = a; });

@@ -145,6 +145,34 @@ const checks = {
     await close();
   },
 
+  async 'leads from a cell of a heat map to its evidence, whose command can be copied'(browser) {
+    const { page, close } = await opened(browser, { permissions: ['clipboard-read', 'clipboard-write'] });
+    const command = page.locator('.evidence .command').first();
+    assert.ok(!await command.isVisible(), 'folded up at first');
+    await page.locator('.heat td a').first().click();
+    await command.waitFor({ state: 'visible' });
+    await command.locator('button').click();
+    await page.waitForFunction(() => document.querySelector('.command button').textContent === 'Copied');
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await command.locator('code').textContent());
+    await close();
+  },
+
+  async 'tells a heat map without its colours: a disc as full as the score, and words'(browser) {
+    const { page, close } = await opened(browser);
+    const cells = await page.$$eval('.heat td', (all) => all.map((c) => ({
+      step: c.className.slice(1), disc: c.querySelector('.pie path')?.getAttribute('d') ?? '',
+      pie: c.querySelector('.pie') !== null, words: c.textContent, ground: getComputedStyle(c).backgroundColor })));
+    for (const cell of cells.filter((c) => c.step)) {
+      assert.match(cell.words, /score [01]\.\d\d/);
+      assert.equal(cell.disc === '', cell.step === '0');
+    }
+    assert.ok(cells.some((c) => !c.step && !c.pie), 'the fixture has a cell without a number');
+    const grounds = (step) => new Set(cells.filter((c) => c.step === step).map((c) => c.ground));
+    assert.equal(grounds('0').size, 1);
+    assert.notDeepEqual(grounds('0'), grounds('10'));
+    await close();
+  },
+
   async 'is whole without JavaScript'(browser) {
     const { page, close } = await opened(browser, { javaScriptEnabled: false });
     assert.ok(await page.locator('#verdicts table tbody tr').count() > 0);

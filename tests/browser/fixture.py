@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 import fixture_bar
+import fixture_work
 
 SIGN = "FIXTURE DATA made by tests/browser/fixture.py, not a result."
 MACHINE = {"cpu": "Fixture CPU, 2 cores", "simd": "AVX2", "threads": 1}
@@ -217,10 +218,15 @@ def tensile_bar(folder):
     return fixture_bar.bar(folder, row, claim, frame, series)
 
 
+def work(folder):
+    """Work against precision, matched errors, a heat map."""
+    return fixture_work.work(folder, row, claim)
+
+
 def write(folder):
     """The fixture's studies below `folder`."""
     for name, make in (("cube", cube), ("patch", patch), ("beam", beam), ("membrane", membrane),
-                       ("bar", tensile_bar)):
+                       ("bar", tensile_bar), ("work", work)):
         here = Path(folder) / f"fixture_{name}"
         here.mkdir(parents=True)
         data = {"name": here.name, "question": SIGN, "source": "tests/browser/fixture.py", "mode": "quick",

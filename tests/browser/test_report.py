@@ -258,15 +258,15 @@ class Report(unittest.TestCase):
         self.assertIn("measured 5.90×10⁻⁸", failure.get("message"))
         self.assertIsNone(suites["fixture_patch"].find("testcase[@name='a']/failure"))
         self.assertIsNotNone(suites["fixture_cube"].find("testcase[@name='later']/skipped"))
-        self.assertEqual(sum(int(s.get("tests")) for s in root), 10)
+        self.assertEqual(sum(int(s.get("tests")) for s in root), 11)
 
     def test_summary_and_json(self):
         summary = (self.out / "summary.md").read_text()
-        self.assertIn("2 of 9 claims failed", summary)
+        self.assertIn("2 of 10 claims failed", summary)
         self.assertLess(summary.index("## Failed"), summary.index("## Fixture: beam"))
         data = json.loads((self.out / "report.json").read_text())
-        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 7, "fail": 2, "open": 1}))
-        self.assertEqual(len(data["studies"]), 5)
+        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 8, "fail": 2, "open": 1}))
+        self.assertEqual(len(data["studies"]), 6)
 
     def test_second_time_is_the_same(self):
         before = (self.out / "index.html").read_bytes()

@@ -1,0 +1,56 @@
+"""Tables of time, memory and resolution at matched errors, as the study found them."""
+
+from .balance import NOTE, SIGN
+from .digits import DASH, duration, exact, pretty
+from .fronts import TIMES, case_of, fem_note
+from .loading import number
+from .palette import swatch
+from .quantities import name_and_unit
+
+
+def tables_of(study, cases):
+    """One for each [[matched]] of the study, as plain data for the template."""
+    return [_table(cases, entry) for entry in study.listed("matched")]
+
+
+def _table(cases, entry):
+    pairs = [(case, told) for told in entry.get("cases") or [] if (case := case_of(cases, told))]
+    starts = [k > 0 and case.scene != pairs[k - 1][0].scene for k, (case, _) in enumerate(pairs)]
+    lines = [{"label": case.label, "start": start, "mark": swatch(case.method, case.style),
+              "cells": [_cell(told, level) for level in entry["levels"]]} for (case, told), start in zip(pairs, starts)]
+    name = name_and_unit(entry["quantity"])[0]
+    time = TIMES.get(entry.get("time"), TIMES["wall_s"])
+    cells = [cell for line in lines for cell in line["cells"]]
+    notes = [f"Under each error the {time}, below it the memory and the resolution N, interpolated between the two "
+             "resolutions that have the error between them. The fastest of its scene is marked.",
+             "≤: the coarsest run is already better." if any(c["kind"] == "coarsest" for c in cells) else "",
+             NOTE if any(c["broken"] for c in cells) else "", entry.get("note"),
+             fem_note([case for case, _ in pairs], entry.get("note"))]
+    return {"caption": entry.get("title") or f"{time.capitalize()} at one {name}", "name": name,
+            "levels": [_level(level) for level in entry["levels"]], "lines": lines,
+            "sentences": [str(s) for s in entry.get("sentences") or []], "note": " ".join(filter(None, notes))}
+
+
+def _level(level):
+    return f"{exact(100 * level)}\u202f%"
+
+
+def _cell(told, level):
+    """What a case needs for an error: {kind, text, below, value, fastest, broken}."""
+    at = next((a for a in told.get("at") or [] if a.get("level") == level), {"status": "no value"})
+    status, out = at.get("status"), {"value": None, "fastest": False, "broken": at.get("balance") == "does not close"}
+    if status in ("met", "met by the coarsest"):
+        sign = "≤ " if status != "met" else ""
+        needs = [f"{pretty(at['memory_mb'], 2)} MB" if number(at.get("memory_mb")) is not None else "",
+                 f"N = {exact(at['resolution'], 3)}" if number(at.get("resolution")) is not None else ""]
+        return out | {"kind": "met" if status == "met" else "coarsest", "text": sign + duration(at["time"]),
+                      "below": ", ".join(filter(None, needs)) + (f" {SIGN}" if out["broken"] else ""),
+                      "value": at["time"], "fastest": bool(at.get("fastest"))}
+    if status == "not reached":
+        best = f"best {_error(at['finest_error'])} in {duration(at.get('finest_time'))}" if at.get("finest_error") else ""
+        return out | {"kind": "not", "text": "not reached", "below": best + (f" {SIGN}" if out["broken"] else "")}
+    return out | {"kind": "none", "text": DASH, "below": at.get("reason") or ""}
+
+
+def _error(error):
+    return f"{pretty(100 * error, 2)}\u202f%"
