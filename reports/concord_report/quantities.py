@@ -27,6 +27,11 @@ NAMES = {  # name: (text, unit); norms.hpp defines the errors
     "peak_rss_mb": ("peak memory", "MB"),
     "h": ("mean spacing h", "m"),
     "t_s": ("time", "s"),
+    "nonaffine_energy_share": ("non-affine share of energy", ""),
+    "nonaffine_energy_share_max": ("largest non-affine share of energy", ""),
+    "nonaffine_energy_share_mean": ("mean non-affine share of energy", ""),
+    "checkerboard": ("checkerboard", ""),
+    "checkerboard_max": ("largest checkerboard", ""),
     "perturb": ("perturbation of the particles", "h"),
     "dt": ("time step", "s"),
 }

@@ -132,7 +132,8 @@ def results_table(study, cases):
             paths.append(path)
     if not paths and not shown and not signals:
         found = {f"{group}.{key}" for c in cases for r in c.rows for group in ("errors", "quantities")
-                 for key in (r.get(group) or {})}
+                 for key in (r.get(group) or {})
+                 if not key.startswith(("nonaffine_energy_share", "checkerboard"))}
         paths = sorted(found)[:8]
     pairs = [(c, l) for c in cases for l in c.levels if any(l.values(p) for p in paths)]
     if not pairs:
@@ -151,20 +152,29 @@ def results_table(study, cases):
 DRIFTS = ("linear_momentum_drift", "angular_momentum_drift", "energy_drift")
 
 
+HOURGLASS = ("nonaffine_energy_share_mean", "nonaffine_energy_share_max", "checkerboard_max")  # quantities of runs
+
+
 def invariants_table(cases):
-    """Largest drift over the seeds on the finest level of each case."""
+    """Largest drift and hourglass number over the seeds on the finest level of each case."""
     pairs = [(c, c.levels[-1]) for c in cases if c.levels]
     names = sorted({k for c, l in pairs for r in l.rows for k in (r.get("invariants") or {})},
                    key=lambda n: (DRIFTS.index(n) if n in DRIFTS else len(DRIFTS), n))
-    pairs = [(c, l) for c, l in pairs if any(l.values(f"invariants.{n}") for n in names)]
+    paths = [f"invariants.{n}" for n in names] + [f"quantities.{n}" for n in HOURGLASS]
+    pairs = [(c, l) for c, l in pairs if any(l.values(p) for p in paths)]
     if not pairs:
         return None
-    columns = [_case_column(pairs), spacing_column([l for _, l in pairs])]
-    for name in names:
-        worst = [max(map(abs, l.values(f"invariants.{name}")), default=None) for _, l in pairs]
-        columns.append(number_column(axis(name), worst, 2))
+    columns, hourglass = [_case_column(pairs), spacing_column([l for _, l in pairs])], False
+    for path in paths:
+        worst = [max(map(abs, l.values(path)), default=None) for _, l in pairs]
+        columns.append(number_column(axis(path), worst, 2))
+        hourglass |= path.startswith("quantities.") and columns[-1] is not None
     columns.append(balance_column([l.rows for _, l in pairs]))
-    return table("Conservation on the finest level", columns, "Largest magnitude over the seeds.")
+    note = "Largest magnitude over the seeds."
+    if hourglass:
+        note += (" Hourglass numbers: the share of the energy in bonds that deform otherwise than their particles do, and "
+                 "the part of the displacements that alternates from particle to particle; both 0 where it is affine.")
+    return table("Conservation" + " and hourglass numbers" * hourglass + " on the finest level", columns, note)
 
 
 def references_table(study, label):
