@@ -34,7 +34,7 @@ def work_precision(study, cases, plot):
     drawn = [case for case in cases if case.index in {c["case"] for c in curves}]
     name = name_and_unit(plot["quantity"])[0]
     note = ["Ringed, on the stepped line: the Pareto front. No other run is both as fast and as accurate." if front else "",
-            plot.get("note"), fem_note(drawn, plot.get("note"))]
+            _absent(plot, labels, cases), plot.get("note"), fem_note(drawn, plot.get("note"))]
     time = TIMES.get(plot.get("time"), TIMES["wall_s"])
     return {"scales": ["log", "log"], "xlabel": f"{time} [s]{_threads(drawn)}", "ylabel": axis(plot["quantity"]),
             "curves": curves, "front": front, "legend": True, "triangles": [],
@@ -49,6 +49,17 @@ def _labels(cases, plot):
     scenes = {case.scene for case in found}
     end = ", " + scenes.pop().replace("_", " ") if len(scenes) == 1 else ""
     return {case.index: case.label.removesuffix(end) for case in found}
+
+
+def _absent(plot, labels, cases):
+    """The resolutions that have no point, by their reasons."""
+    reasons = {}
+    for entry in plot.get("curves") or []:
+        case = case_of(cases, entry)
+        for told in entry.get("absent") or []:
+            who = f"{labels[case.index]} at resolution {exact(told.get('resolution'))}" if case else ""
+            reasons.setdefault(told.get("reason") or "no number", []).append(who)
+    return " ".join(f"Not drawn: {', '.join(filter(None, who))} ({why})." for why, who in reasons.items())
 
 
 def _front(curves, plot):

@@ -191,7 +191,8 @@ def references_table(study, label):
          number_column("GCI, relative", [e.get("gci") for e in entries], 2),
          number_column("safety factor", [_safety(e) for e in entries],
                        texts=exact_column([_safety(e) for e in entries])),
-         text_column("in words", [e.get("statement") or e.get("text") or "" for e in entries])],
+         text_column("in words", [e.get("statement") or e.get("text") or "" for e in entries]),
+         balance_column([[e] for e in entries])],
         "GCI: grid convergence index from three levels, with the safety factor of Roache’s rule.")
 
 

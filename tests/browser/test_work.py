@@ -16,7 +16,7 @@ sys.path[:0] = [str(HERE), str(REPORTS)]
 
 import fixture  # noqa: E402  (needs the paths above)
 import fixture_work  # noqa: E402
-from concord_report import cases, digits, fronts, heatmaps, matched, outputs, plots, quantities, signals  # noqa: E402
+from concord_report import cases, digits, fronts, heatmaps, matched, outputs, plots, quantities, signals, tables  # noqa: E402
 from concord_report.loading import load_study  # noqa: E402
 from test_figures import drawing, row, study  # noqa: E402
 
@@ -83,10 +83,12 @@ class Fronts(Fixture):
 
     def test_cases_without_points_are_left_out(self):
         plot = self.study.data["plots"][0]
-        curves = [{**c, "points": []} if c["method"] == "delaunay" else c for c in plot["curves"]]
+        gone = {"points": [], "absent": [{"resolution": 2, "reason": "det F <= 0"}]}
+        curves = [{**c, **gone} if c["method"] == "delaunay" else c for c in plot["curves"]]
         _, spec = self.spec(curves=curves, front=[[4, 3]])
         self.assertEqual([c["method"] for c in spec["curves"]], ["tlsph", "fem", "fem"])
         self.assertEqual(spec["front"], [(plot["curves"][4]["points"][3]["time"], plot["curves"][4]["points"][3]["error"])])
+        self.assertIn("Not drawn: Delaunay ξ 1 at resolution 2, Delaunay ξ 0 at resolution 2 (det F <= 0).", spec["note"])
         self.assertIn("no run", self.spec(curves=[], front=[])[1])
 
 
@@ -209,6 +211,15 @@ class Page(Fixture):
         self.assertEqual(len(re.findall(r'<dt id="fixture-work-heat0-\d-\d">', html)), cells)
         for link in re.findall(r'<a href="(\.\.[^"]+)/"', html):
             self.assertTrue((out / link).is_dir(), link)
+
+
+class Balance(unittest.TestCase):
+    def test_references_that_do_not_balance_are_marked(self):
+        entries = [{"method": "fem", "quantity": "q", "value": 1.0, **more} for more in ({}, {"balance": "does not close"})]
+        made = tables.references_table(study([], references=entries), lambda e: e["method"])
+        self.assertEqual([line[-1]["badge"] for line in made["rows"]], [False, True])
+        self.assertIsNone(next((c for c in tables.references_table(study([], references=entries[:1]), lambda e: "")["columns"]
+                                if c["label"] == "energy balance"), None))
 
 
 class Names(unittest.TestCase):
