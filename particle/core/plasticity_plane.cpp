@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -213,6 +214,19 @@ CONCORD_INLINE void piola_stress(const PlaneLaw& law, const double (&h)[4][W], c
   }
 }
 
+/// The lanes of a group of which at least one flows; an elastic one takes the values that it
+/// has among elastic ones. Out of line: elastic groups have no more of it than the trial state
+/// at hand.
+__attribute__((noinline)) CONCORD_CLONES void flow(const PlaneLaw& law, const double (&h)[4][W],
+                                                   const PlaneStates& old, Trial& t,
+                                                   PlaneStates& next, double (&p)[4][W]) {
+  if constexpr (!features::return_map) std::abort();
+  Row beta;
+  return_map(law, old, t, next, beta);
+  new_metric(h, old, t, beta, next);
+  piola_stress(law, h, t, beta, p);
+}
+
 }  // namespace
 
 CONCORD_CLONES unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][W],
@@ -220,19 +234,16 @@ CONCORD_CLONES unsigned plane_lanes(const PlaneLaw& law, const double (&h)[4][W]
                                     double (&p)[4][W], double (&j)[W]) {
   Trial t;
   trial_strains(law, h, old, j, t);
-  Row beta;
   double flowing = 0;
   for (int l = 0; l < W; ++l) t.flows[l] = t.q[l] > t.yield[l] ? 1 : 0;
   for (int l = 0; l < W; ++l) flowing += t.flows[l];
-  // An elastic lane takes the same values on either way.
-  if (features::return_map && flowing > 0) {
-    return_map(law, old, t, next, beta);
-    new_metric(h, old, t, beta, next);
+  if (flowing > 0) {
+    flow(law, h, old, t, next, p);
   } else {
+    constexpr Row elastic = {1, 1, 1, 1, 1, 1, 1, 1};
     next = old;
-    for (double& one : beta) one = 1.0;
+    piola_stress(law, h, t, elastic, p);
   }
-  piola_stress(law, h, t, beta, p);
   unsigned beyond = 0;
   for (int l = 0; l < W; ++l) beyond |= (t.near[l] == 1 ? 0u : 1u) << l;
   return beyond;
