@@ -53,4 +53,25 @@ void Grid::fill(const Points& points) {
   }
 }
 
+/// Every candidate is written, the next one over it if it was too far: no branch to guess.
+std::size_t Grid::within(const Vec3& X, double limit, std::vector<Found>& found) const {
+  const std::array<Index, 3> c = cell_of(X);
+  std::size_t count = 0;
+  for (Index k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, m_cells[2] - 1); ++k) {
+    for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
+      const Index first = m_begin[number({std::max(c[0] - 1, 0), j, k})];
+      const Index last = m_begin[number({std::min(c[0] + 1, m_cells[0] - 1), j, k}) + 1];
+      const std::size_t most = count + static_cast<std::size_t>(last - first) + 1;
+      if (found.size() < most) found.resize(most);
+      for (Index s = first; s < last; ++s) {
+        const Vec3 X_ab = m_positions[s] - X;
+        const double r2 = X_ab.squaredNorm();
+        found[count] = {m_sorted[s], r2, X_ab};
+        count += r2 < limit ? 1 : 0;
+      }
+    }
+  }
+  return count;
+}
+
 }  // namespace concord::sph

@@ -13,18 +13,14 @@ class Grid {
  public:
   Grid(const Points& points, double R);
 
-  /// visit(b, X_b) for every point in the cells around X.
-  template <class Visit> void around(const Vec3& X, const Visit& visit) const {
-    const std::array<Index, 3> c = cell_of(X);
-    for (Index k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, m_cells[2] - 1); ++k) {
-      for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
-        const Index first = number({std::max(c[0] - 1, 0), j, k});
-        const Index last = number({std::min(c[0] + 1, m_cells[0] - 1), j, k});
-        for (Index s = m_begin[first]; s < m_begin[last + 1]; ++s)
-          visit(m_sorted[s], m_positions[s]);
-      }
-    }
-  }
+  struct Found {
+    Index b;
+    double r2;  ///< |X_ab|^2 < limit
+    Vec3 X_ab;
+  };
+  /// All points closer to X than the root of `limit` <= R^2, in an order that depends on the
+  /// points alone. Returns their number; `found` grows as needed and is not shrunk.
+  std::size_t within(const Vec3& X, double limit, std::vector<Found>& found) const;
 
  private:
   Index extent(const Vec3& high, int i, double edge) const;

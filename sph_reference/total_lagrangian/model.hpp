@@ -8,6 +8,7 @@
 #include "scene/material.hpp"
 #include "sph_reference/total_lagrangian/loops.hpp"
 
+#include <bitset>
 #include <optional>
 
 namespace concord::sph {
@@ -31,6 +32,12 @@ class TotalLagrangianSph final : public particle::ForceModel {
 
   void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
               const Executor& executor) override;
+  bool has_parts() const override { return true; }
+  /// Computes whole blocks and copies the parts: cut along blocks they cost least.
+  void forces_of(std::span<const particle::ParticleRange> parts, std::span<const double> u,
+                 std::span<const double> v, std::span<double> f,
+                 const Executor& executor) override;
+  particle::ParticleRange reach(particle::ParticleRange part) const override;
   particle::Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   const Stiffness& tangent(std::span<const double> u) override;
@@ -49,13 +56,27 @@ class TotalLagrangianSph final : public particle::ForceModel {
     return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none;
   }
   Mat3 plane_gradient(Index a) const;
-  /// State at u and v, continued to the images.
-  State state(std::span<const double> u, std::span<const double> v, std::span<double> f,
-              const Executor& executor);
-  template <class Loop> void for_blocks(const Executor& executor, const Loop& loop) const;
+  /// Blocks of the neighbour lists, a bit each.
+  using BlockSet = std::bitset<max_blocks>;
+  BlockSet all_blocks() const;
+  BlockSet blocks_over(particle::ParticleRange range) const;
+  /// Blocks whose particles the rows of `blocks` read.
+  BlockSet neighbours_of(const BlockSet& blocks) const;
+  /// What the forces on `blocks` depend on: blocks of which u is read, H and T are needed.
+  struct Needs {
+    BlockSet u, H, T;
+  };
+  Needs needs_of(const BlockSet& blocks) const;
+  /// State at u in `blocks` and at v, continued to the images.
+  State state(const BlockSet& blocks, std::span<const double> u, std::span<const double> v,
+              std::span<double> f, const Executor& executor);
+  void evaluate(const BlockSet& blocks, const Needs& needs, const State& s,
+                const Executor& executor);
+  template <class Loop>
+  void for_blocks(const BlockSet& blocks, const Executor& executor, const Loop& loop) const;
   Column make_tensors() const;
-  /// H_a of all points.
-  void update_gradients(const State& s, const Executor& executor);
+  /// H_a of `blocks` and of the images.
+  void update_gradients(const BlockSet& blocks, const State& s, const Executor& executor);
   Vec3 local_displacement(Index a, Index b) const;
   double penalty_energy(const Executor& executor) const;
 
@@ -66,10 +87,12 @@ class TotalLagrangianSph final : public particle::ForceModel {
   Points m_points;
   Neighbours m_rows;
   Loops m_loops;
-  Column m_state;   ///< [X | u] of all points
-  Column m_H, m_T;  ///< of all points, see State
-  Column m_v;       ///< of all points, with viscosity and images
+  Column m_state;    ///< [X | u] of all points
+  Column m_H, m_T;   ///< of all points, see State
+  Column m_partial;  ///< forces of blocks of which parts are asked for; made when first needed
+  Column m_v;        ///< of all points, with viscosity and images
   std::optional<particle::TangentAssembly> m_tangent;  ///< made when first asked for
+  std::vector<BlockSet> m_near;                        ///< neighbours_of() each block
   std::vector<Index> m_bad;                            ///< first bad particle of each block
 };
 

@@ -12,10 +12,12 @@
 namespace concord::sph {
 namespace {
 
-struct Candidate {
-  Index b;
-  double r2;  ///< |X_ab|^2
+/// An entry of a row; the row is sorted by `key`, b with those of the own block first.
+struct Entry {
+  std::int64_t key;
+  double c, k;
 };
+constexpr std::int64_t elsewhere = std::int64_t{1} << 32;  ///< added to b of other blocks
 
 /// A piece of the lists: whole rows, on one thread.
 struct Part {
@@ -25,12 +27,6 @@ struct Part {
   Index singular = -1;    ///< first particle whose neighbours do not span the space,
   std::size_t found = 0;  ///< and their number
   Index lowest = 0, highest = -1;
-
-  void add(Index b, double c, double k, bool penalised) {
-    other.push_back(b);
-    weight.push_back(c);
-    if (penalised) stiffness.push_back(k);
-  }
 };
 
 /// Inverts V_a K_a into its padded columns; false if the neighbours do not span the space.
@@ -57,64 +53,60 @@ class Search {
       : m_points(points), m_V(V), m_kernel(kernel), m_penalty(penalty),
         m_grid(points, kernel.radius()) {}
 
-  /// Rows of particles [first, last), all of one block.
+  /// Rows of particles [first, last), all of the block [block_begin, block_end).
   void find(Index first, Index last, Index block_begin, Index block_end, Neighbours& rows,
             Part& part) const {
-    std::vector<Candidate> candidates;
+    std::vector<Grid::Found> found;
+    std::vector<Entry> row;
     part.lowest = first, part.highest = last - 1;
     for (Index a = first; a < last; ++a) {
-      collect(a, candidates);
-      weigh(a, block_begin, block_end, candidates, rows, part);
+      weigh(a, block_begin, block_end, found, row, rows, part);
+      std::sort(row.begin(), row.end(),
+                [](const Entry& p, const Entry& q) { return p.key < q.key; });
+      const auto outside = std::partition_point(
+          row.begin(), row.end(), [](const Entry& e) { return e.key < elsewhere; });
+      rows.cut[a] = static_cast<std::size_t>(outside - row.begin());
+      rows.begin[a + 1] = row.size();
+      for (const Entry& e : row) {
+        part.other.push_back(static_cast<Index>(e.key % elsewhere));
+        part.weight.push_back(e.c);
+        if (m_penalty > 0) part.stiffness.push_back(e.k);
+      }
     }
   }
 
  private:
-  /// All neighbours of a, sorted by number. A lattice has pairs at R itself, where W and W'
-  /// vanish: round-off shall not decide whether they count. Nor does a particle count its image
-  /// at its own place, to which X_ab = 0.
-  void collect(Index a, std::vector<Candidate>& candidates) const {
-    const double R = m_kernel.radius();
-    const double limit = R * R * (1 - 1e-10), same_place = 1e-20 * R * R;
-    const Vec3 X_a = m_points.position(a);
-    candidates.clear();
-    m_grid.around(X_a, [&](Index b, const Vec3& X_b) {
-      const double r2 = (X_b - X_a).squaredNorm();
-      if (r2 < limit && b != a && (r2 > same_place || m_points.source(b) != a))
-        candidates.push_back({b, r2});
-    });
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& p, const Candidate& q) { return p.b < q.b; });
-  }
-
-  /// Sums V_a K_a over all neighbours of a, and enters those that belong to its row: first the
-  /// pairs within the block, then the others.
-  void weigh(Index a, Index block_begin, Index block_end,
-             const std::vector<Candidate>& candidates, Neighbours& rows, Part& part) const {
+  /// Sums V_a K_a (TLS.4) over all neighbours of a, and gathers those that belong to its row. A
+  /// lattice has pairs at R itself, where W and W' vanish: round-off shall not decide whether
+  /// they count. Nor does a particle count its image at its own place, to which X_ab = 0.
+  void weigh(Index a, Index block_begin, Index block_end, std::vector<Grid::Found>& found,
+             std::vector<Entry>& row, Neighbours& rows, Part& part) const {
     const Body& body = m_points.body();
-    const std::size_t start = part.other.size();
+    const double R2 = m_kernel.radius() * m_kernel.radius();
+    const std::size_t count = m_grid.within(m_points.position(a), R2 * (1 - 1e-10), found);
+    std::size_t neighbours = 0;
     Mat3 K = Mat3::Zero();
-    for (const bool within : {true, false}) {
-      for (const auto& [b, r2] : candidates) {
-        if ((b >= block_begin && b < block_end) != within) continue;
-        const Index source = m_points.source(b);
-        const double areas = m_V[a] * m_V[source] / body.thickness, r = std::sqrt(r2);
-        const double c = areas * m_kernel.slope(r);
-        const Vec3 X_ab = m_points.position(b) - m_points.position(a);
-        K += c * X_ab * X_ab.transpose();
-        if (within && b < a) continue;
-        part.add(b, c, m_penalty > 0 ? m_penalty * areas * m_kernel.value(r) / r2 : 0,
-                 m_penalty > 0);
-        part.lowest = std::min(part.lowest, source);
-        part.highest = std::max(part.highest, source);
-      }
-      if (within) rows.cut[a] = part.other.size() - start;
+    row.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [b, r2, X_ab] = found[i];
+      const Index source = m_points.source(b);
+      if (b == a || (source == a && r2 <= 1e-20 * R2)) continue;
+      ++neighbours;
+      const double areas = m_V[a] * m_V[source] / body.thickness, r = std::sqrt(r2);
+      const double c = areas * m_kernel.slope(r);
+      K.noalias() += (c * X_ab) * X_ab.transpose();
+      const bool within = b >= block_begin && b < block_end;
+      if (within && b < a) continue;
+      row.push_back({within ? b : b + elsewhere, c,
+                     m_penalty > 0 ? m_penalty * areas * m_kernel.value(r) / r2 : 0});
+      part.lowest = std::min(part.lowest, source);
+      part.highest = std::max(part.highest, source);
     }
-    rows.begin[a + 1] = part.other.size() - start;
-    part.directed += candidates.size();
+    part.directed += neighbours;
     double* inverse =
         &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
     if (!invert_moment(body, K, inverse) && part.singular < 0)
-      part.singular = a, part.found = candidates.size();
+      part.singular = a, part.found = neighbours;
   }
 
   const Points& m_points;
@@ -188,8 +180,9 @@ std::vector<Index> blocks_of(const Body& body, double R) {
     low = low.cwiseMin(body.position(a));
     high = high.cwiseMax(body.position(a));
   }
-  const double thick = (high - low).maxCoeff() / (2 * R);
-  Index count = static_cast<Index>(std::min({64.0, thick, body.n / 512.0}));
+  const double radii = (high - low).maxCoeff() / R;
+  const double thick = std::max(std::min(radii / 2, 4.0), radii / 3);
+  Index count = static_cast<Index>(std::min<double>({max_blocks, thick, body.n / 512.0}));
   count = std::max<Index>(1, count - count % 2);
   std::vector<Index> begin(count + 1);
   for (Index k = 0; k <= count; ++k)

@@ -24,7 +24,7 @@ struct Neighbours {
   Column stiffness;                ///< k_ab [N/m], symmetric (TLS.9); empty without penalty
   Column inverse_moment;           ///< (V_a K_a)^-1 [1/m^3] (TLS.4), dim padded columns
   std::size_t directed = 0;        ///< sum over the particles of their neighbours
-  std::vector<Index> lowest;  ///< lowest and highest particle among the neighbours of a block
+  std::vector<Index> lowest;       ///< lowest and highest particle that a block's rows read
   std::vector<Index> highest;
 
   /// Zeros behind `weight` and `stiffness`, so that a vector may be loaded from the last row's
@@ -49,9 +49,11 @@ DirectedRows directed_rows(const Neighbours& rows);
 Neighbours find_neighbours(const Points& points, std::span<const double> V,
                            const Kernel& kernel, double penalty, const Executor& executor);
 
-/// Contiguous ranges of particles, the same for every number of threads: at least 2 R thick
-/// along the body's longest axis, where particles in sweep order (Body) make a fifth more
-/// entries than there are pairs, at least 512 particles, an even number of them, at most 64.
+/// Contiguous ranges of particles, the same for every number of threads: as many as are at
+/// least 512 particles and 2 R thick along the body's longest axis, beyond four at least 3 R,
+/// so that particles in sweep order (Body) have few pairs between blocks; an even number; at
+/// most max_blocks.
+inline constexpr Index max_blocks = 64;
 std::vector<Index> blocks_of(const Body& body, double R);
 
 }  // namespace concord::sph

@@ -52,7 +52,7 @@ const particle::ForceModel::Stiffness& TotalLagrangianSph::tangent(std::span<con
                      "truncated where a tangent is asked for: it knows no images");
   }
   const Executor one_thread(1);
-  update_gradients(state(u, {}, {}, one_thread), one_thread);
+  update_gradients(all_blocks(), state(all_blocks(), u, {}, {}, one_thread), one_thread);
   std::vector<particle::Moduli> moduli(m_body.n);
   for (Index a = 0; a < m_body.n; ++a) {
     moduli[a] = m_constitution.tangent(a, plane_gradient(a));
