@@ -24,7 +24,7 @@ PLAIN = 500  # width of a plot without labels
 
 matplotlib.rcParams.update({
     "svg.hashsalt": "concord", "svg.fonttype": "none", "font.size": SIZE, "axes.unicode_minus": True,
-    "font.family": "DejaVu Sans", "path.simplify": True, "path.simplify_threshold": 0.3,
+    "font.family": "DejaVu Sans", "path.simplify": True, "path.simplify_threshold": 0.1,
     "axes.edgecolor": MUTED, "axes.labelcolor": INK, "xtick.color": MUTED, "ytick.color": MUTED,
     "xtick.labelcolor": INK, "ytick.labelcolor": INK, "text.color": INK, "axes.linewidth": 0.8,
 })

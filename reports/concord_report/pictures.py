@@ -18,6 +18,7 @@ from .palette import RED_BLUE, VIRIDIS
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
 FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
 CODE = ("render", "render_vtk", "render_plane", "render_scatter", "plane_cells", "solid_cells", "frames", "palette")
+WIDE = (1760, 1320)  # pixels of a solid body's drawing, alone and as a panel; the picture has half of it
 LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 
 
@@ -173,7 +174,7 @@ def _limits(low, high, wanted=None, difference=False):
 
 def _render_job(job):
     stops = RED_BLUE if job["diverging"] else VIRIDIS
-    more = {"long": job["long"]} if job["plane"] else {}
+    more = {"long": job["long"]} if job["plane"] else {"wide": WIDE[job["whole"] is not None]}
     return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat", "plate")} \
         | {"stops": stops, **more}
 

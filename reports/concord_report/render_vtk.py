@@ -13,7 +13,6 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
 from . import frames, solid_cells
 
-LONG = 1760  # pixels of the drawing's width; the picture has half of it: that smooths its edges
 EDGES_UP_TO = 60000  # cells; a finer mesh's edges would only darken the picture
 GREY = (0.62, 0.62, 0.62)
 
@@ -250,11 +249,11 @@ def _shade(actor, flat):
     look.SetSpecularPower(30)
 
 
-def _size(view):
-    """Pixels of the picture: the shape of what is seen, within reason."""
+def _size(view, across):
+    """Pixels of the drawing, at most `across` in a line: the shape of what is seen, within reason."""
     wide, high = (view["high"][k] - view["low"][k] for k in (0, 1))
     shape = min(3.0, max(0.5, wide / high if high > 0 else 3.0))
-    width = min(LONG, LONG * shape / 1.1)
+    width = min(across, across * shape / 1.1)
     return 2 * round(width / 2), 2 * round(width / shape / 2)
 
 
@@ -311,7 +310,7 @@ def draw(frame, job):
     window.SetOffScreenRendering(True)
     window.SetAlphaBitPlanes(True)
     window.SetMultiSamples(0)
-    size = _size(job["view"])
+    size = _size(job["view"], job["wide"])
     window.SetSize(*size)
     window.AddRenderer(renderer)
     _view(renderer, job["view"], size)

@@ -27,7 +27,13 @@ def fragment(figure, ident, alt, tips=()):
     head = (f'<svg viewBox="{view}" role="img" aria-label="{html.escape(alt, quote=True)}" '
             f'class="chart" style="max-width:{wide}px">')
     text = head + text[text.index(">") + 1:]
-    return re.sub(r"\n\s*", "\n", text)
+    return re.sub(r"\n\s*", "\n", _short(text))
+
+
+def _short(text):
+    """Coordinates to a hundredth of a pixel: six decimals of every point are a third of a page."""
+    def rounded(match): return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
+    return re.sub(r' (?:d|x|y)="[^"]+"', lambda m: re.sub(r"-?\d+\.\d{3,}", rounded, m[0]), text)
 
 
 def _own_ids(text, ident):
