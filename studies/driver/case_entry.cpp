@@ -84,6 +84,7 @@ void check_probe(StrictTable& table, const Case& entry,
   if (!entry.probe.empty()) {
     only_with("repeats", "only in cases without a probe");
     if (entry.frames) only_with("frames", "false: a probe leaves no frames");
+    if (!entry.frames_at.empty()) only_with("frames_at", "nothing: a probe leaves no frames");
     return;
   }
   only_with("options", "only in cases with a probe");
@@ -109,6 +110,7 @@ CaseEntry read_case(StrictTable table, bool full) {
   if (entry.resolutions.empty()) table.missing("resolutions", "a list such as [4, 8, 16]");
   if (auto seeds = read_seeds(table); !seeds.empty()) entry.seeds = seeds;
   entry.frames = table.flag_or("frames", false);
+  entry.frames_at = table.positive_numbers("frames_at");
   read_probe(table, entry);
   const bool in_mode = apply_quick(table, entry, full);
   table.finish();

@@ -1,5 +1,7 @@
 #include "studies/driver/claims.hpp"
 
+#include "studies/driver/work_precision.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,14 +21,6 @@ struct Measured {
 std::string run_title(const Study& study, const Row& row) {
   return fmt::format("{}, resolution {:g}, seed {}", study.cases[row.case_index].title(),
                      row.resolution, row.seed);
-}
-
-double pool_of(const std::vector<double>& values, Pool pool) {
-  if (pool == Pool::max) return *std::max_element(values.begin(), values.end());
-  if (pool == Pool::min) return *std::min_element(values.begin(), values.end());
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
 }
 
 /// What a claim asks of runs, for the claim's own cases or the denominator's.
@@ -123,6 +117,10 @@ Measured measure(const Study& study, const Claim& claim, const std::vector<Row>&
                  const std::vector<ReferenceResult>& references) {
   if (claim.kind == ClaimKind::slope) return slope(study, claim, fits);
   if (claim.kind == ClaimKind::gci) return gci(study, claim, references);
+  if (claim.kind == ClaimKind::matched_ratio) {
+    MatchedRatio ratio = matched_ratio(study, claim, rows);
+    return {ratio.value, std::move(ratio.reason), {}, std::move(ratio.remarks)};
+  }
   const Wanted wanted{claim.selector, claim.quantity, claim.resolution, claim.over_seeds};
   Measured value = claim.kind == ClaimKind::minimum ? least(study, claim, rows, wanted)
                                                     : pooled(study, rows, wanted);

@@ -49,6 +49,8 @@ void add_run(CLI::App& app, Commands& commands) {
   CLI::App* run = app.add_subcommand("run", "run one method on one scene");
   add_problem(run, commands.run, "default build/runs/SCENE-METHOD");
   run->add_flag("--frames,!--no-frames", commands.run.frames, "write field frames (default)");
+  run->add_option("--repeats", commands.run.repeats,
+                  "time N more runs, warm and without output: medians and quartiles");
   run->callback(
       [&commands] { commands.job = [&commands] { return run_command(commands.run); }; });
 }

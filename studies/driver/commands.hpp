@@ -18,6 +18,7 @@ struct RunOptions {
   std::vector<std::string> set;  ///< "key=value"
   std::filesystem::path out;     ///< empty: build/runs/SCENE-METHOD
   bool frames = true;
+  int repeats = 0;  ///< timed warm runs after the first; 0: the first one's times count
 };
 int run_command(const RunOptions& options);
 

@@ -79,6 +79,7 @@ void read_color_range(StrictTable& table, Picture& picture) {
 
 Plot read_plot(StrictTable table) {
   Plot plot;
+  plot.where = table.where();
   plot.kind = choose<std::string>(table, "kind",
                                   {{"convergence", "convergence"},
                                    {"cost", "cost"},

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace concord::studies {
@@ -67,8 +68,10 @@ class Planner {
         m_problem(problem_of(m_entry, false)), m_last_frame(problem_of(m_entry, true)) {}
 
   void add(double resolution, std::uint64_t seed, Plan& plan) const {
-    const bool frames = m_entry.frames && resolution == m_entry.resolutions.back() &&
-                        seed == m_entry.seeds.front();
+    const auto& at = m_entry.frames_at;
+    const bool asked = (m_entry.frames && resolution == m_entry.resolutions.back()) ||
+                       std::find(at.begin(), at.end(), resolution) != at.end();
+    const bool frames = asked && seed == m_entry.seeds.front();
     const bool last_only = !frames && needs_last_frame(m_study, m_case, resolution, seed);
     const scene::Problem& problem = last_only ? m_last_frame : m_problem;
     const RunKey run{&m_entry, resolution, seed, frames || last_only, m_study.timing};

@@ -66,7 +66,24 @@ std::optional<bool> balance_closes(const Study& study, const Row& row) {
   return std::abs(*drift) <= *study.balance_tolerance;
 }
 
+bool balances_close(const Study& study, const std::vector<Row>& rows, std::size_t case_index,
+                    const std::vector<double>& resolutions) {
+  return std::none_of(rows.begin(), rows.end(), [&](const Row& row) {
+    return row.case_index == case_index && !balance_closes(study, row).value_or(true) &&
+           std::find(resolutions.begin(), resolutions.end(), row.resolution) !=
+               resolutions.end();
+  });
+}
+
 const char* balance_text(bool closes) { return closes ? "closes" : "does not close"; }
+
+double pool_of(const std::vector<double>& values, Pool pool) {
+  if (pool == Pool::max) return *std::max_element(values.begin(), values.end());
+  if (pool == Pool::min) return *std::min_element(values.begin(), values.end());
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
 
 namespace {
 

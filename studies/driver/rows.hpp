@@ -34,8 +34,14 @@ std::string why_absent(const Row& row, const std::string& quantity);
 /// Whether |invariants.energy_drift| of a run is within the study's balance_tolerance; nothing
 /// where the study sets none or the run has no drift.
 std::optional<bool> balance_closes(const Study& study, const Row& row);
+/// Whether no run of a case at these resolutions has a balance that does not close.
+bool balances_close(const Study& study, const std::vector<Row>& rows, std::size_t case_index,
+                    const std::vector<double>& resolutions);
 /// "closes" or "does not close".
 const char* balance_text(bool closes);
+
+/// Greatest, least or mean of at least one value.
+double pool_of(const std::vector<double>& values, Pool pool);
 
 /// One resolution of a case: a quantity over its seeds. Exists only if every seed has a value.
 struct Level {

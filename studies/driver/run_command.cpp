@@ -7,6 +7,7 @@
 #include "studies/driver/given.hpp"
 #include "studies/driver/memory.hpp"
 #include "studies/driver/progress.hpp"
+#include "studies/driver/timed_runs.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +38,19 @@ void print_summary(const scene::RunIdentity& id, const scene::Result& result,
   fmt::print("  {}\n", (out / "summary.json").string());
 }
 
+scene::RunRequest request_of(const RunOptions& options, const scene::Problem& problem) {
+  if (options.repeats < 0)
+    throw InputError({"command line"}, "--repeats", std::to_string(options.repeats),
+                     "0 or more timed runs");
+  scene::RunRequest request;
+  request.h = problem.reference_length / options.resolution;
+  request.perturb = options.perturb;
+  request.seed = options.seed;
+  request.threads = options.threads;
+  request.write_frames = options.frames;
+  return request;
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
@@ -55,14 +69,9 @@ int run_command(const RunOptions& options) {
                               problem.dim(), options.resolution, options.perturb,
                               options.seed};
   Progress progress(problem.name + ", " + options.method);
-  scene::RunRequest request;
-  request.h = problem.reference_length / options.resolution;
-  request.perturb = options.perturb;
-  request.seed = options.seed;
-  request.threads = options.threads;
+  scene::RunRequest request = request_of(options, problem);
   request.settings = given.of_method;
   request.out = out;
-  request.write_frames = options.frames;
   request.progress = [&progress](double done, const std::string& what) {
     progress.update(done, what);
   };
@@ -70,10 +79,12 @@ int run_command(const RunOptions& options) {
   result.threads = options.threads;
   const MemoryUse memory;
   double bytes_per_particle = std::nan("");
+  Timings timings;  // the run itself is the warm-up where there are repeats
   try {
     method.run(problem, request, result);
     bytes_per_particle = memory.bytes_per_particle(result.particles);
     scene::add_exact_errors(problem, result);
+    timings = time_runs(method, problem, request, options.repeats);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {  // numerics or Ctrl-C: keep what there is
@@ -81,8 +92,12 @@ int run_command(const RunOptions& options) {
     throw;
   }
   progress.finish();
-  scene::write_file(out / "summary.json",
-                    with_memory(scene::summary_json(id, result), bytes_per_particle));
+  if (options.repeats > 0) {
+    result.setup_s = quantile(timings.setup_s, 0.5);
+    result.wall_s = quantile(timings.wall_s, 0.5);
+  }
+  const std::string summary = with_memory(scene::summary_json(id, result), bytes_per_particle);
+  scene::write_file(out / "summary.json", with_timings(summary, timings));
   print_summary(id, result, out);
   return 0;
 }

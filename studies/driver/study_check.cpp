@@ -63,6 +63,22 @@ void check_errors(const Study& study, const std::vector<Case>& all) {
   }
 }
 
+/// Errors and times of different scenes do not stand on one front.
+void check_plots(const Study& study, const std::vector<Case>& all) {
+  for (const Plot& plot : study.plots) {
+    if (plot.kind != "work_precision") continue;
+    check_selects(all, plot.selector, false, plot.where, "plot");
+    std::string scene;
+    for (const Case& one : all) {
+      if (!one.matches(plot.selector)) continue;
+      if (!scene.empty() && one.scene != scene)
+        throw InputError(plot.where, "plot.scene", scene + " and " + one.scene,
+                         "cases of one scene in a work_precision plot");
+      scene = one.scene;
+    }
+  }
+}
+
 void check_timing(const Study& study, const std::vector<Case>& all) {
   for (const Case& one : all)
     if (one.repeats > 0 && !study.timing)
@@ -85,6 +101,7 @@ void check_heatmaps(const Study& study, const std::vector<Case>& all) {
 void check_study(const Study& study, const std::vector<Case>& all) {
   check_names(all);
   check_timing(study, all);
+  check_plots(study, all);
   check_claims(study, all);
   check_errors(study, all);
   check_heatmaps(study, all);

@@ -25,7 +25,8 @@ struct Case {
   double perturb = 0;                            ///< fraction of h
   std::vector<double> resolutions;               ///< ascending
   std::vector<std::uint64_t> seeds{1};
-  bool frames = false;
+  bool frames = false;                         ///< kept of the finest resolution
+  std::vector<double> frames_at;               ///< and of these
   std::string probe;                           ///< a test of `concord probe`; empty: runs
   std::map<std::string, std::string> options;  ///< of the probe
   int repeats = 0;                             ///< timed warm runs; 0: the run itself is timed
@@ -119,6 +120,7 @@ struct Plot {
   std::vector<Baseline> baseline;
   std::optional<Window> inset;     ///< curve: enlarged in a corner
   WorkTime time = WorkTime::wall;  ///< work_precision
+  SourcePosition where;
 };
 
 /// What picks a frame and its values.

@@ -2,6 +2,7 @@
 
 #include "scene/output.hpp"
 #include "studies/driver/drawing_json.hpp"
+#include "studies/driver/measure_json.hpp"
 #include "studies/driver/tables.hpp"
 
 #include <algorithm>
@@ -105,6 +106,13 @@ json row_json(const StudyResult& result, const Row& row) {
   return object;
 }
 
+/// Marks what runs entered whose energy balance does not close.
+void put_balance(json& object, const StudyResult& result, std::size_t case_index,
+                 const std::vector<double>& resolutions) {
+  if (!balances_close(*result.study, result.rows, case_index, resolutions))
+    object["balance"] = balance_text(false);
+}
+
 json fit_json(const StudyResult& result, const FitResult& fit) {
   json object{{"quantity", fit.quantity},
               {"slope", fit.line.slope},
@@ -112,6 +120,7 @@ json fit_json(const StudyResult& result, const FitResult& fit) {
               {"levels", fit.resolutions.size()},
               {"resolutions", fit.resolutions}};
   name_case(object, result.study->cases[fit.case_index]);
+  put_balance(object, result, fit.case_index, fit.resolutions);
   return object;
 }
 
@@ -123,6 +132,7 @@ json reference_json(const StudyResult& result, const ReferenceResult& reference)
               {"asymptotic", convergence.asymptotic},
               {"statement", convergence.statement}};
   name_case(object, result.study->cases[reference.case_index]);
+  put_balance(object, result, reference.case_index, reference.resolutions);
   if (!reference.resolutions.empty()) object["value"] = reference.value;
   if (convergence.asymptotic) {
     object["order"] = convergence.order;
@@ -153,14 +163,22 @@ json study_json(const StudyResult& result) {
               {"verdict", result.passed() ? "pass" : "fail"}};
   if (study.balance_tolerance) object["balance_tolerance"] = *study.balance_tolerance;
   if (result.interrupted) object["interrupted"] = true;
-  for (const char* list : {"claims", "rows", "fits", "references", "plots", "pictures"})
+  for (const char* list :
+       {"claims", "rows", "fits", "references", "matched", "heatmap", "plots", "pictures"})
     object[list] = json::array();
   for (const ClaimResult& claim : result.claims) object["claims"].push_back(claim_json(claim));
   for (const Row& row : result.rows) object["rows"].push_back(row_json(result, row));
   for (const FitResult& fit : result.fits) object["fits"].push_back(fit_json(result, fit));
   for (const ReferenceResult& reference : result.references)
     object["references"].push_back(reference_json(result, reference));
-  for (const Plot& plot : study.plots) object["plots"].push_back(plot_json(study, plot));
+  for (const Matched& matched : study.matched)
+    object["matched"].push_back(matched_json(result, matched));
+  for (const Heatmap& map : study.heatmaps)
+    object["heatmap"].push_back(heatmap_json(result, map));
+  for (const Plot& plot : study.plots) {
+    object["plots"].push_back(plot_json(study, plot));
+    if (plot.kind == "work_precision") put_work_precision(object["plots"].back(), result, plot);
+  }
   for (const Picture& picture : study.pictures) {
     const auto& panels = picture.panels;
     const bool any =

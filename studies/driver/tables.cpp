@@ -21,6 +21,14 @@ std::string exact(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : "";
 }
 
+/// "does not close" where a run at these resolutions of a case has no closed energy balance.
+std::string balance_cell(const StudyResult& result, std::size_t case_index,
+                         const std::vector<double>& resolutions) {
+  return balances_close(*result.study, result.rows, case_index, resolutions)
+             ? ""
+             : balance_text(false);
+}
+
 Cells case_cells(const Case& entry) { return {entry.scene, entry.method, entry.variant}; }
 
 /// Quantities that any run has, as dotted paths.
@@ -81,11 +89,15 @@ Table claims_table(const StudyResult& result) {
 }
 
 Table fits_table(const StudyResult& result) {
-  Table table{"fits", {"scene", "method", "variant", "quantity", "slope", "r2", "levels"}, {}};
+  Table table{
+      "fits",
+      {"scene", "method", "variant", "quantity", "slope", "r2", "levels", "energy balance"},
+      {}};
   for (const FitResult& fit : result.fits) {
     Cells cells = case_cells(result.study->cases[fit.case_index]);
     cells.insert(cells.end(), {fit.quantity, number(fit.line.slope), number(fit.line.r2),
-                               std::to_string(fit.resolutions.size())});
+                               std::to_string(fit.resolutions.size()),
+                               balance_cell(result, fit.case_index, fit.resolutions)});
     table.cells.push_back(std::move(cells));
   }
   return table;
@@ -93,11 +105,14 @@ Table fits_table(const StudyResult& result) {
 
 Table references_table(const StudyResult& result) {
   Table table{
-      "references", {"scene", "method", "variant", "quantity", "value", "statement"}, {}};
+      "references",
+      {"scene", "method", "variant", "quantity", "value", "statement", "energy balance"},
+      {}};
   for (const ReferenceResult& reference : result.references) {
     Cells cells = case_cells(result.study->cases[reference.case_index]);
     cells.insert(cells.end(),
-                 {reference.quantity, exact(reference.value), reference.convergence.statement});
+                 {reference.quantity, exact(reference.value), reference.convergence.statement,
+                  balance_cell(result, reference.case_index, reference.resolutions)});
     table.cells.push_back(std::move(cells));
   }
   return table;
@@ -106,7 +121,7 @@ Table references_table(const StudyResult& result) {
 Table convergence_table(const StudyResult& result, const std::string& quantity) {
   Table table{"convergence-" + slug(quantity),
               {"scene", "method", "variant", "resolution", "h [m]", "unknowns", "mean", "min",
-               "max", "seeds", "local order", "time loop or solve [s]"},
+               "max", "seeds", "local order", "time loop or solve [s]", "energy balance"},
               {}};
   for (std::size_t c = 0; c < result.study->cases.size(); ++c) {
     const auto levels = levels_of(result.rows, c, quantity);
@@ -121,7 +136,8 @@ Table convergence_table(const StudyResult& result, const std::string& quantity) 
                     number(level.unknowns), number(level.mean), number(level.minimum),
                     number(level.maximum), std::to_string(level.seeds),
                     std::isfinite(order) ? fmt::format("{:.2f}", order) : "",
-                    result.study->timing ? number(level.wall_s) : ""});
+                    result.study->timing ? number(level.wall_s) : "",
+                    balance_cell(result, c, {level.resolution})});
       table.cells.push_back(std::move(cells));
     }
   }
@@ -174,6 +190,7 @@ std::vector<Table> tables_of(const StudyResult& result) {
   for (const Fit& fit : result.study->fits)
     if (quantities.insert(fit.quantity).second)
       tables.push_back(convergence_table(result, fit.quantity));
+  for (Table& table : measure_tables(result)) tables.push_back(std::move(table));
   std::erase_if(tables, [](const Table& table) { return table.cells.empty(); });
   return tables;
 }

@@ -17,8 +17,11 @@ struct Table {
   std::string markdown() const;  ///< a pipe table
 };
 
-/// runs, claims, fits, references and convergence-QUANTITY for every fit; those without a line
-/// are left out.
+/// runs, claims, fits, references, convergence-QUANTITY for every fit and those of
+/// measure_tables; those without a line are left out.
 std::vector<Table> tables_of(const StudyResult& result);
+
+/// work-precision-N, matched-N, matched-N-sentences and heatmap-N.
+std::vector<Table> measure_tables(const StudyResult& result);
 
 }  // namespace concord::studies
