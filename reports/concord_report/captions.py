@@ -34,10 +34,15 @@ def caption(job):
     return case, parts
 
 
+def in_rows(whole):
+    """True for a figure with a row of panels for each instant; instants of one body stand side by side."""
+    return bool(whole and whole.get("times")) and len(whole.get("panels") or []) > 1
+
+
 def _as_wanted(job):
     """True for a panel in a row of an instant, which the row tells, when its frame is of that instant."""
     wanted = number(job["picture"].get("time"))
-    return "instant" in job["picture"] and abs(job["time"] - wanted) <= OFF * abs(wanted)
+    return in_rows(job["whole"]) and abs(job["time"] - wanted) <= OFF * abs(wanted)
 
 
 def time_text(time, row):
@@ -80,12 +85,12 @@ def note(jobs):
     if count > 1:
         which = "both" if count == 2 else f"all {count}"
         out.append(f"One colour scale and one view for {which} pictures"
-                   + (", each row centred on its bodies." if any(j["followed"] for j in jobs) else "."))
+                   + (", each instant centred on its bodies." if any(j["followed"] for j in jobs) else "."))
         if any(bar_):
             out.append("Values beyond an end of the scale, where it has a tip, have that end’s colour.")
     if any(j["plate"] for j in jobs):
         out.append("The grey plate is where the body is held.")
-    if any("instant" in j["picture"] for j in jobs):
+    if in_rows(jobs[0]["whole"]):
         out.append("Frames nearest to the instants; one that is more than 1 % off tells its own time.")
     return " ".join(out)
 
@@ -121,7 +126,7 @@ def panel_width(job, rows):
 def columns(whole, count):
     """How many panels stand side by side: those of an instant; the author's number; one row up to four,
     else whole rows of three or four where there are."""
-    if whole.get("times"):
+    if in_rows(whole):
         return max(1, count // len(whole["times"]))
     wanted = number(whole.get("columns"))
     if wanted and wanted >= 1:

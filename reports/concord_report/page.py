@@ -71,7 +71,7 @@ def _group(group):
             "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
             "panel_width": captions.panel_width(drawn[0], -(-len(jobs) // (columns or 1))),
             "triad": [] if drawn[0]["view"]["flat"] else captions.triad(), "note": captions.note(drawn)}
-    for k, one in enumerate(view["pictures"] if whole and whole.get("times") else []):
+    for k, one in enumerate(view["pictures"] if captions.in_rows(whole) else []):
         one["instant"] = "" if k % columns else captions.time_text(whole["times"][k // columns], drawn[0]["row"])
     return view
 

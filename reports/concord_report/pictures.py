@@ -17,7 +17,7 @@ from .palette import RED_BLUE, VIRIDIS
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
 FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
-CODE = ("render", "render_vtk", "render_plane", "render_scatter", "plane_cells", "solid_cells", "frames", "palette")
+CODE = ("render", "render_vtk", "render_lines", "render_plane", "render_scatter", "plane_cells", "solid_cells", "frames", "palette")
 WIDE = (1760, 1320)  # pixels of a solid body's drawing, alone and as a panel; the picture has half of it
 LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 

@@ -3,15 +3,15 @@ colour a particle, so that methods compare; particles outside such a body as sha
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
-from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkLookupTable, vtkPoints
+from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkLookupTable
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
-from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkFeatureEdges, vtkPolyDataNormals
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkLightKit, vtkPolyDataMapper, vtkRenderer,
                                          vtkRenderWindow, vtkWindowToImageFilter)
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
-from . import frames, solid_cells
+from . import frames, render_lines, solid_cells
 
 EDGES_UP_TO = 60000  # cells; a finer mesh's edges would only darken the picture
 GREY = (0.62, 0.62, 0.62)
@@ -19,7 +19,7 @@ GREY = (0.62, 0.62, 0.62)
 
 def _grid(frame, positions, data):
     grid = vtkUnstructuredGrid()
-    grid.SetPoints(_points(positions))
+    grid.SetPoints(render_lines.vtk_points(positions))
     cells = vtkCellArray()
     cells.SetData(numpy_to_vtkIdTypeArray(np.ascontiguousarray(frame["offsets"], np.int64), deep=True),
                   numpy_to_vtkIdTypeArray(np.ascontiguousarray(frame["connectivity"], np.int64), deep=True))
@@ -62,9 +62,9 @@ def _spheres(positions, data, job):
     full = spread[spread > 1e-9 * spread.max()]
     diameter = job["h"] or (np.prod(full) / max(1, len(positions))) ** (1 / max(1, len(full)))
     cloud = vtkPolyData()
-    cloud.SetPoints(_points(positions))
+    cloud.SetPoints(render_lines.vtk_points(positions))
     _attach(cloud, data)
-    cloud.SetVerts(_cells(np.arange(len(positions))[:, None]))
+    cloud.SetVerts(render_lines.vtk_cells(np.arange(len(positions))[:, None]))
     mapper = vtkOpenGLSphereMapper()  # ray-cast spheres: two triangles each
     mapper.SetInputData(cloud)
     mapper.SetRadius(0.5 * diameter)
@@ -99,30 +99,17 @@ def _body(positions, reference, data, job):
     actor, mapper = _lit(skin, job)
     mapper.SetScalarModeToUseCellData()
     mapper.SetInterpolateScalarsBeforeMapping(False)
-    rim = _lines(points[quads[:, [1, 2, 3]]].reshape(-1, 3), np.arange(3 * len(quads)).reshape(-1, 3), job)
+    rim = render_lines.lines(points[quads[:, [1, 2, 3]]].reshape(-1, 3), np.arange(3 * len(quads)).reshape(-1, 3), job)
     rim.GetProperty().SetOpacity(0.16)
-    return [actor, rim, *_creases(skin, job), *(_spheres(positions[alone], data[alone], job) if len(alone) else ())]
+    return [actor, rim, *render_lines.creases(skin, job), *(_spheres(positions[alone], data[alone], job) if len(alone) else ())]
 
 
 def _polygons(points, cells):
     """Polygons with equally many corners."""
     skin = vtkPolyData()
-    skin.SetPoints(_points(points))
-    skin.SetPolys(_cells(cells))
+    skin.SetPoints(render_lines.vtk_points(points))
+    skin.SetPolys(render_lines.vtk_cells(cells))
     return skin
-
-
-def _points(positions):
-    points = vtkPoints()
-    points.SetData(numpy_to_vtk(np.ascontiguousarray(positions, float), deep=True))
-    return points
-
-
-def _cells(cells):
-    made = vtkCellArray()
-    made.SetData(numpy_to_vtkIdTypeArray(np.arange(len(cells) + 1) * cells.shape[1], deep=True),
-                 numpy_to_vtkIdTypeArray(np.ascontiguousarray(cells.reshape(-1), np.int64), deep=True))
-    return made
 
 
 def _lit(skin, job):
@@ -136,45 +123,6 @@ def _lit(skin, job):
     actor = vtkActor()
     actor.SetMapper(mapper)
     return actor, mapper
-
-
-def _lines(points, lines, job):
-    """Thin dark lines, a little nearer to the eye than they are."""
-    view = job["view"]
-    reach = max(h - l for l, h in zip(view["low"], view["high"]))
-    drawing = vtkPolyData()
-    drawing.SetPoints(_points(points + 0.002 * reach * frames.view_axes(view["flat"])[2]))
-    drawing.SetLines(_cells(lines))
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputData(drawing)
-    mapper.ScalarVisibilityOff()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    look = actor.GetProperty()
-    look.SetColor(0.05, 0.06, 0.08)
-    look.SetOpacity(0.35)
-    look.SetLineWidth(2.0)
-    look.LightingOff()
-    return actor
-
-
-def _creases(skin, job):
-    """The body's own sharp edges: where a field is nearly white, the page would swallow the body."""
-    clean = vtkCleanPolyData()  # faces of cells and shares meet in one point
-    clean.SetInputData(skin)
-    clean.SetTolerance(1e-6)
-    edges = vtkFeatureEdges()
-    edges.SetInputConnection(clean.GetOutputPort())
-    edges.SetFeatureAngle(50)
-    edges.NonManifoldEdgesOff()
-    edges.BoundaryEdgesOff()
-    edges.ColoringOff()
-    edges.Update()
-    found = edges.GetOutput()
-    if not found.GetNumberOfPoints():
-        return []
-    pairs = vtk_to_numpy(found.GetLines().GetConnectivityArray()).reshape(-1, 2)
-    return [_lines(vtk_to_numpy(found.GetPoints().GetData()).astype(float), pairs, job)]
 
 
 def _plate(job):
@@ -206,35 +154,9 @@ def _surface(frame, positions, data, job):
     actor = vtkActor()
     actor.SetMapper(mapper)
     last.Update()
-    actors = [actor] if job["view"]["flat"] else [actor, *_creases(surface.GetOutput(), job)]
+    actors = [actor] if job["view"]["flat"] else [actor, *render_lines.creases(surface.GetOutput(), job)]
     if len(frame["types"]) <= EDGES_UP_TO:
-        actors += _edges(frame, positions, job)
-    return actors
-
-
-TETRAHEDRON = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))  # edges in VTK's order, as are the nodes on them
-HEXAHEDRON = ((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7))
-CELLS = {10: (4, TETRAHEDRON), 24: (10, TETRAHEDRON), 12: (8, HEXAHEDRON), 25: (20, HEXAHEDRON), 29: (27, HEXAHEDRON)}
-PIECES = 6  # of a curved edge
-
-
-def _edges(frame, positions, job):
-    """The cells' edges, curved where they are; inner ones are hidden by the surface."""
-    actors = []
-    for kind in sorted(set(np.unique(frame["types"]).tolist()) & set(CELLS)):
-        nodes, ends = CELLS[kind]
-        starts = np.asarray(frame["offsets"])[:-1][frame["types"] == kind]
-        cells = frame["connectivity"][starts[:, None] + np.arange(nodes)]
-        pairs = np.sort(cells[:, ends].reshape(-1, 2), axis=1)
-        pairs, first = np.unique(pairs, axis=0, return_index=True)
-        corners = max(map(max, ends)) + 1
-        curved = nodes > corners
-        t = np.linspace(0, 1, PIECES + 1) if curved else np.array([0, 1])
-        line = np.einsum("p,ed->epd", 1 - t, positions[pairs[:, 0]]) + np.einsum("p,ed->epd", t, positions[pairs[:, 1]])
-        if curved:  # what the node on the edge is off its middle
-            middle = cells[:, corners:corners + len(ends)].reshape(-1)[first]
-            line += np.einsum("p,ed->epd", 4 * t * (1 - t), positions[middle] - positions[pairs].mean(axis=1))
-        actors.append(_lines(line.reshape(-1, 3), np.arange(len(line) * len(t)).reshape(-1, len(t)), job))
+        actors += render_lines.edges(frame, positions, job)
     return actors
 
 
@@ -326,4 +248,6 @@ def _pixels(window):
     grab.Update()
     image = grab.GetOutput()
     width, height, _ = image.GetDimensions()
-    return vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 4)[::-1].copy()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, 4)[::-1].copy()
+    pixels[..., 3] = np.where(pixels[..., 3] > 0, 255, 0)  # faint lines thin out the ground that they are drawn on
+    return pixels

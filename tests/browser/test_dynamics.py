@@ -133,6 +133,12 @@ class Instants(unittest.TestCase):
         self.assertEqual([p.get("why") for p in group["pictures"]], ["this report has no such run", None] * 2)
         self.assertEqual(([p["instant"] for p in group["pictures"]], missing), (["t = 0.5 s", "", "t = 1 s", ""], []))
 
+    def test_instants_of_one_body_stand_side_by_side_and_tell_their_times(self):
+        jobs = self.jobs("held", times=[0, 0.5, 1], panels=[], method="fem")
+        self.assertEqual(captions.columns(jobs[0]["whole"], 3), 3)
+        self.assertEqual([j["time"] for j in jobs], [0.0, 0.5, 0.996])
+        self.assertIn("t = 0.5 s", captions.caption(jobs[1])[1])
+
     def test_a_frame_that_is_off_tells_its_time(self):
         near, far = self.jobs("held", times=[1])[0], self.jobs("held", times=[0.7])[0]
         self.assertNotIn("t = 0.996 s", captions.caption(near)[1])
