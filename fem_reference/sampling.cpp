@@ -51,6 +51,35 @@ scene::Samples sample(const Discretisation<dim>& discretisation, const NodalFiel
   return out;
 }
 
+namespace {
+
+/// Means over the `count` contributions to each node. A node without any, where the law gives
+/// no stress in any cell (det F <= 0 beside a singular corner, between sound Gauss points),
+/// takes the mean over the nodes of its cells that have one.
+void average(const scene::Mesh& mesh, const std::vector<int>& count,
+             std::vector<double>& values) {
+  const auto n = static_cast<std::size_t>(mesh.nodes_per_cell);
+  for (std::size_t k = 0; k < count.size(); ++k)
+    if (count[k] > 0) values[k] /= count[k];
+  std::vector<double> sum(count.size(), 0.0);
+  std::vector<int> around(count.size(), 0);
+  for (std::size_t c = 0; c < mesh.cell_count(); ++c) {
+    const Index* nodes = &mesh.cells[c * n];
+    for (std::size_t at = 0; at < n; ++at) {
+      if (count[nodes[at]] > 0) continue;
+      for (std::size_t a = 0; a < n; ++a) {
+        if (count[nodes[a]] == 0) continue;
+        sum[nodes[at]] += values[nodes[a]];
+        ++around[nodes[at]];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < count.size(); ++k)
+    if (around[k] > 0) values[k] = sum[k] / around[k];
+}
+
+}  // namespace
+
 template <int dim>
 NodalStress nodal_stress(const Discretisation<dim>& discretisation,
                          const Hyperelastic<dim>& law, const dealii::Vector<double>& u) {
@@ -80,21 +109,16 @@ NodalStress nodal_stress(const Discretisation<dim>& discretisation,
       }
       dealii::SymmetricTensor<2, 3> sigma;
       dealii::Tensor<2, 3> F3;
-      const bool sound = law.cauchy(F, sigma) && law.complete(F, F3);
-      const double nan = std::nan("");
-      const double mises = sound ? std::sqrt(1.5) * deviator(sigma).norm() : nan;
+      if (!law.cauchy(F, sigma) || !law.complete(F, F3)) continue;
+      const double mises = std::sqrt(1.5) * deviator(sigma).norm();
       out.von_mises[nodes[at]] += mises;
-      out.kirchhoff_mises[nodes[at]] += sound ? mises * determinant(F3) : nan;
-      out.pressure[nodes[at]] += sound ? -trace(sigma) / 3 : nan;
+      out.kirchhoff_mises[nodes[at]] += mises * determinant(F3);
+      out.pressure[nodes[at]] += -trace(sigma) / 3;
       ++count[nodes[at]];
     }
   }
-  for (std::size_t k = 0; k < count.size(); ++k) {
-    if (count[k] == 0) continue;
-    out.von_mises[k] /= count[k];
-    out.pressure[k] /= count[k];
-    out.kirchhoff_mises[k] /= count[k];
-  }
+  for (auto* values : {&out.von_mises, &out.pressure, &out.kirchhoff_mises})
+    average(mesh, count, *values);
   return out;
 }
 

@@ -14,7 +14,8 @@ scene::Samples sample(const Discretisation<dim>& discretisation, const NodalFiel
                       double thickness, const dealii::Vector<double>& u,
                       const dealii::Vector<double>& v);
 
-/// Stress at nodes: values of the cells around a node, averaged.
+/// Stress at nodes: values of the cells around a node, averaged over those where the law gives
+/// one; where none does (det F <= 0 at the node), mean of the neighbouring nodes in its cells.
 struct NodalStress {
   std::vector<double> von_mises;  ///< sqrt(3/2 s:s), s the deviator of the Cauchy stress [Pa]
   std::vector<double> pressure;   ///< -tr(sigma)/3 [Pa]
