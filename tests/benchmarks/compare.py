@@ -57,9 +57,9 @@ class Side:
 
 
 def counts_wall_time(name):
-    """A run of several threads is timed by the clock: its CPU time is that of the calling thread alone."""
+    """A run of several threads is timed by the clock (its CPU time is that of the calling thread alone), and what asks for it."""
     match = re.search(r"\bthreads:(\d+)", name)
-    return match is not None and int(match.group(1)) > 1
+    return name.endswith("/real_time") or (match is not None and int(match.group(1)) > 1)
 
 
 def read_times(text):

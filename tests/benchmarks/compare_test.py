@@ -83,6 +83,7 @@ class Reading(unittest.TestCase):
 
     def test_wall_time_of_several_threads(self):
         self.assertEqual(self.read(self.entry(run_name="s/threads:2")), {"s/threads:2": 5e6})
+        self.assertEqual(self.read(self.entry(run_name="s/real_time")), {"s/real_time": 5e6})
         self.assertEqual(self.read(self.entry(run_name="s/threads:1")), {"s/threads:1": 1e6})
 
     def test_benchmark_that_failed(self):
