@@ -52,43 +52,43 @@ inline std::vector<Index> outer_facets(int dim, const std::vector<Index>& cells)
   return facets;
 }
 
-/// A unit square or cube of count^dim particles, moved at random by up to 10 % of the spacing
-/// inside, in simplices.
-inline particle::Body lattice(const scene::Problem& problem, int count) {
+/// A brick (rectangle) of count[0] x count[1] (x count[2]) particles of spacing h, moved at
+/// random by up to 10 % of it inside, in simplices.
+inline particle::Body lattice(const scene::Problem& problem, const std::array<int, 3>& count,
+                              double h) {
   const int dim = problem.dim();
+  const std::array<Index, 3> step{1, count[0], count[0] * count[1]};
   scene::Mesh mesh;
   mesh.dim = dim;
-  mesh.h = 1.0 / (count - 1);
+  mesh.h = h;
   mesh.entities.push_back({dim, 1, true, -1, {}});
-  const std::array<Index, 3> step{1, count, count * count};
-  const int layers = dim == 3 ? count : 1;
-  for (int k = 0; k < layers; ++k) {
-    for (int j = 0; j < count; ++j) {
-      for (int i = 0; i < count; ++i) {
-        const std::array<int, 3> place{i, j, k};
+  mesh.nodes_per_cell = dim + 1;
+  mesh.nodes_per_facet = dim;
+  const auto simplices = kuhn_simplices(dim);
+  std::array<int, 3> place{};
+  for (place[2] = 0; place[2] < (dim == 3 ? count[2] : 1); ++place[2]) {
+    for (place[1] = 0; place[1] < count[1]; ++place[1]) {
+      for (place[0] = 0; place[0] < count[0]; ++place[0]) {
+        const auto a = static_cast<Index>(mesh.nodes.size());
+        bool opens_cell = true;
         Vec3 X = Vec3::Zero();
         for (int c = 0; c < dim; ++c) {
-          const bool inside = place[c] > 0 && place[c] < count - 1;
-          const double shift = scene::uniform_random(1, mesh.nodes.size(), c) - 0.5;
-          X[c] = mesh.h * (place[c] + (inside ? 0.2 * shift : 0.0));
+          const bool inside = place[c] > 0 && place[c] < count[c] - 1;
+          const double shift = scene::uniform_random(1, a, c) - 0.5;
+          X[c] = h * (place[c] + (inside ? 0.2 * shift : 0.0));
+          opens_cell = opens_cell && place[c] < count[c] - 1;
         }
         mesh.nodes.push_back(X);
+        if (!opens_cell) continue;
+        for (const auto& simplex : simplices) {
+          for (const auto& corner : simplex)
+            mesh.cells.push_back(a + corner[0] * step[0] + corner[1] * step[1] +
+                                 corner[2] * step[2]);
+        }
       }
     }
   }
   mesh.node_entity.assign(mesh.nodes.size(), 0);
-  mesh.nodes_per_cell = dim + 1;
-  for (Index a = 0; a < static_cast<Index>(mesh.nodes.size()); ++a) {
-    if (a % count == count - 1 || a / count % count == count - 1 ||
-        (dim == 3 && a / (count * count) == count - 1))
-      continue;
-    for (const auto& simplex : kuhn_simplices(dim)) {
-      for (const auto& corner : simplex)
-        mesh.cells.push_back(a + corner[0] * step[0] + corner[1] * step[1] +
-                             corner[2] * step[2]);
-    }
-  }
-  mesh.nodes_per_facet = dim;
   mesh.facets = outer_facets(dim, mesh.cells);
   mesh.facet_entity.assign(mesh.facets.size() / dim, 0);
   return particle::make_body(problem, std::move(mesh), particle::CellSource::mesh);

@@ -36,6 +36,12 @@ scene::Problem rubber() { return free_body(Dimension::three_d, "swinging_cube");
 /// Particles an edge: 729 particles.
 int edge(const scene::Problem& problem) { return problem.dim() == 3 ? 9 : 27; }
 
+/// Square or cube of side 1.
+Body unit_body(const scene::Problem& problem) {
+  const int n = edge(problem);
+  return instructions::lattice(problem, {n, n, n}, 1.0 / (n - 1));
+}
+
 /// Stretches along the first axis by about `strain` a step.
 scene::Problem steel(Dimension dimension, double strain) {
   scene::Problem problem = free_body(dimension, "tensile_bar");
@@ -73,7 +79,7 @@ void count_steps(const std::string& name, const scene::Problem& problem, const B
 
 void delaunay_steps(const std::string& name, const scene::Problem& problem, double xi,
                     double c1, const Tune& tune = {}) {
-  const Body body = instructions::lattice(problem, edge(problem));
+  const Body body = unit_body(problem);
   const Executor executor(1);
   delaunay::Parameters parameters;
   parameters.xi_n = parameters.xi_t = xi;
@@ -84,7 +90,7 @@ void delaunay_steps(const std::string& name, const scene::Problem& problem, doub
 
 void sph_steps(const std::string& name, double psi, PenaltyForm penalty, double alpha) {
   const scene::Problem problem = rubber();
-  const Body body = instructions::lattice(problem, edge(problem));
+  const Body body = unit_body(problem);
   const Executor executor(1);
   sph::TlsphOptions options;
   options.psi = psi, options.penalty = penalty, options.alpha = alpha;
