@@ -12,7 +12,7 @@ Grid::Grid(const Points& points, double R) : m_low(Vec3::Constant(1e300)) {
     high = high.cwiseMax(points.position(a));
   }
   // Thin or scattered bodies: no more cells than points, so that memory stays linear.
-  m_edge = R;
+  m_edge = R / 2;
   while (cells_at(high, m_edge) > std::max<double>(64, points.count())) m_edge *= 1.26;
   for (int i = 0; i < 3; ++i) m_cells[i] = extent(high, i, m_edge);
   fill(points);
@@ -57,10 +57,10 @@ void Grid::fill(const Points& points) {
 std::size_t Grid::within(const Vec3& X, double limit, std::vector<Found>& found) const {
   const std::array<Index, 3> c = cell_of(X);
   std::size_t count = 0;
-  for (Index k = std::max(c[2] - 1, 0); k <= std::min(c[2] + 1, m_cells[2] - 1); ++k) {
-    for (Index j = std::max(c[1] - 1, 0); j <= std::min(c[1] + 1, m_cells[1] - 1); ++j) {
-      const Index first = m_begin[number({std::max(c[0] - 1, 0), j, k})];
-      const Index last = m_begin[number({std::min(c[0] + 1, m_cells[0] - 1), j, k}) + 1];
+  for (Index k = std::max(c[2] - 2, 0); k <= std::min(c[2] + 2, m_cells[2] - 1); ++k) {
+    for (Index j = std::max(c[1] - 2, 0); j <= std::min(c[1] + 2, m_cells[1] - 1); ++j) {
+      const Index first = m_begin[number({std::max(c[0] - 2, 0), j, k})];
+      const Index last = m_begin[number({std::min(c[0] + 2, m_cells[0] - 1), j, k}) + 1];
       const std::size_t most = count + static_cast<std::size_t>(last - first) + 1;
       if (found.size() < most) found.resize(most);
       for (Index s = first; s < last; ++s) {

@@ -19,14 +19,15 @@ struct Entry {
 };
 constexpr std::int64_t elsewhere = std::int64_t{1} << 32;  ///< added to b of other blocks
 
-/// A piece of the lists: whole rows, on one thread.
-struct Part {
-  std::vector<Index> other;
-  std::vector<double> weight, stiffness;
+/// Particles that one thread searches for at a time, of one block, and what it finds out beside
+/// their rows.
+struct Piece {
+  Index first, last;
+  std::size_t block;
   std::size_t directed = 0;
+  Index lowest = first, highest = last - 1;
   Index singular = -1;    ///< first particle whose neighbours do not span the space,
   std::size_t found = 0;  ///< and their number
-  Index lowest = 0, highest = -1;
 };
 
 /// Inverts V_a K_a into its padded columns; false if the neighbours do not span the space.
@@ -53,60 +54,82 @@ class Search {
       : m_points(points), m_V(V), m_kernel(kernel), m_penalty(penalty),
         m_grid(points, kernel.radius()) {}
 
-  /// Rows of particles [first, last), all of the block [block_begin, block_end).
-  void find(Index first, Index last, Index block_begin, Index block_end, Neighbours& rows,
-            Part& part) const {
+  /// Lengths of the piece's rows.
+  void count(const Piece& piece, Neighbours& rows) const {
+    std::vector<Grid::Found> found;
+    for (Index a = piece.first; a < piece.last; ++a) {
+      const std::size_t near = neighbours(a, found);
+      for (std::size_t i = 0; i < near; ++i)
+        rows.begin[a + 1] += in_row(a, found[i].b, piece.block, rows) ? 1 : 0;
+    }
+  }
+
+  /// The piece's rows, sorted, whose places are known, and their corrections.
+  void fill(Piece& piece, Neighbours& rows) const {
     std::vector<Grid::Found> found;
     std::vector<Entry> row;
-    part.lowest = first, part.highest = last - 1;
-    for (Index a = first; a < last; ++a) {
-      weigh(a, block_begin, block_end, found, row, rows, part);
+    for (Index a = piece.first; a < piece.last; ++a) {
+      weigh(a, found, row, rows, piece);
       std::sort(row.begin(), row.end(),
                 [](const Entry& p, const Entry& q) { return p.key < q.key; });
-      const auto outside = std::partition_point(
-          row.begin(), row.end(), [](const Entry& e) { return e.key < elsewhere; });
-      rows.cut[a] = static_cast<std::size_t>(outside - row.begin());
-      rows.begin[a + 1] = row.size();
+      std::size_t k = rows.begin[a];
+      rows.cut[a] = k;
       for (const Entry& e : row) {
-        part.other.push_back(static_cast<Index>(e.key % elsewhere));
-        part.weight.push_back(e.c);
-        if (m_penalty > 0) part.stiffness.push_back(e.k);
+        if (e.key < elsewhere) ++rows.cut[a];
+        rows.other[k] = static_cast<Index>(e.key % elsewhere);
+        rows.weight[k] = e.c;
+        if (m_penalty > 0) rows.stiffness[k] = e.k;
+        ++k;
       }
     }
   }
 
  private:
-  /// Sums V_a K_a (TLS.4) over all neighbours of a, and gathers those that belong to its row. A
-  /// lattice has pairs at R itself, where W and W' vanish: round-off shall not decide whether
-  /// they count. Nor does a particle count its image at its own place, to which X_ab = 0.
-  void weigh(Index a, Index block_begin, Index block_end, std::vector<Grid::Found>& found,
-             std::vector<Entry>& row, Neighbours& rows, Part& part) const {
-    const Body& body = m_points.body();
+  static bool within(Index b, std::size_t block, const Neighbours& rows) {
+    return b >= rows.blocks[block] && b < rows.blocks[block + 1];
+  }
+  static bool in_row(Index a, Index b, std::size_t block, const Neighbours& rows) {
+    return b > a || !within(b, block, rows);
+  }
+
+  /// All neighbours of a, in the grid's order. A lattice has pairs at R itself, where W and W'
+  /// vanish: round-off shall not decide whether they count. Nor does a particle count its image
+  /// at its own place, to which X_ab = 0.
+  std::size_t neighbours(Index a, std::vector<Grid::Found>& found) const {
     const double R2 = m_kernel.radius() * m_kernel.radius();
-    const std::size_t count = m_grid.within(m_points.position(a), R2 * (1 - 1e-10), found);
-    std::size_t neighbours = 0;
+    const std::size_t near = m_grid.within(m_points.position(a), R2 * (1 - 1e-10), found);
+    const auto end = found.begin() + static_cast<std::ptrdiff_t>(near);
+    const auto itself = [&](const Grid::Found& p) {
+      return p.b == a || (p.r2 <= 1e-20 * R2 && m_points.source(p.b) == a);
+    };
+    return static_cast<std::size_t>(std::remove_if(found.begin(), end, itself) - found.begin());
+  }
+
+  /// Sums V_a K_a (TLS.4) over all neighbours of a, and weighs those that belong to its row.
+  void weigh(Index a, std::vector<Grid::Found>& found, std::vector<Entry>& row,
+             Neighbours& rows, Piece& piece) const {
+    const Body& body = m_points.body();
+    const std::size_t near = neighbours(a, found);
     Mat3 K = Mat3::Zero();
     row.clear();
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < near; ++i) {
       const auto& [b, r2, X_ab] = found[i];
       const Index source = m_points.source(b);
-      if (b == a || (source == a && r2 <= 1e-20 * R2)) continue;
-      ++neighbours;
-      const double areas = m_V[a] * m_V[source] / body.thickness, r = std::sqrt(r2);
-      const double c = areas * m_kernel.slope(r);
+      const double areas = m_V[a] * m_V[source] / body.thickness;
+      const double c = areas * m_kernel.slope(std::sqrt(r2));
       K.noalias() += (c * X_ab) * X_ab.transpose();
-      const bool within = b >= block_begin && b < block_end;
-      if (within && b < a) continue;
-      row.push_back({within ? b : b + elsewhere, c,
-                     m_penalty > 0 ? m_penalty * areas * m_kernel.value(r) / r2 : 0});
-      part.lowest = std::min(part.lowest, source);
-      part.highest = std::max(part.highest, source);
+      if (!in_row(a, b, piece.block, rows)) continue;
+      row.push_back(
+          {within(b, piece.block, rows) ? b : b + elsewhere, c,
+           m_penalty > 0 ? m_penalty * areas * m_kernel.value(std::sqrt(r2)) / r2 : 0});
+      piece.lowest = std::min(piece.lowest, source);
+      piece.highest = std::max(piece.highest, source);
     }
-    part.directed += neighbours;
+    piece.directed += near;
     double* inverse =
         &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
-    if (!invert_moment(body, K, inverse) && part.singular < 0)
-      part.singular = a, part.found = neighbours;
+    if (!invert_moment(body, K, inverse) && piece.singular < 0)
+      piece.singular = a, piece.found = near;
   }
 
   const Points& m_points;
@@ -129,47 +152,14 @@ class Search {
                    "(2 spacings serve on most arrangements)");
 }
 
-/// Particles that one thread searches for at a time; pieces do not straddle blocks.
-constexpr Index search_piece = 2048;
-struct Piece {
-  Index first, last;
-  std::size_t block;
-};
-
 std::vector<Piece> pieces_of(const std::vector<Index>& blocks) {
+  constexpr Index size = 2048;
   std::vector<Piece> pieces;
   for (std::size_t block = 0; block + 1 < blocks.size(); ++block) {
-    for (Index first = blocks[block]; first < blocks[block + 1]; first += search_piece)
-      pieces.push_back({first, std::min(first + search_piece, blocks[block + 1]), block});
+    for (Index first = blocks[block]; first < blocks[block + 1]; first += size)
+      pieces.push_back({first, std::min(first + size, blocks[block + 1]), block});
   }
   return pieces;
-}
-
-/// Joins the parts, and turns counts into places.
-void join(const std::vector<Piece>& pieces, std::vector<Part>& parts, bool penalised,
-          Neighbours& rows) {
-  for (std::size_t a = 0; a + 1 < rows.begin.size(); ++a) {
-    rows.cut[a] += rows.begin[a];
-    rows.begin[a + 1] += rows.begin[a];
-  }
-  const std::size_t count = rows.begin.back();
-  rows.other.reserve(count);
-  rows.weight.reserve(count + Neighbours::padding);
-  if (penalised) rows.stiffness.reserve(count + Neighbours::padding);
-  rows.lowest.assign(rows.blocks.begin(), rows.blocks.end() - 1);
-  rows.highest = rows.lowest;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    Part part = std::move(parts[i]);  // freed at the end of this turn
-    rows.other.insert(rows.other.end(), part.other.begin(), part.other.end());
-    rows.weight.insert(rows.weight.end(), part.weight.begin(), part.weight.end());
-    rows.stiffness.insert(rows.stiffness.end(), part.stiffness.begin(), part.stiffness.end());
-    rows.directed += part.directed;
-    Index& lowest = rows.lowest[pieces[i].block];
-    Index& highest = rows.highest[pieces[i].block];
-    lowest = std::min(lowest, part.lowest), highest = std::max(highest, part.highest);
-  }
-  rows.weight.resize(count + Neighbours::padding, 0.0);
-  if (penalised) rows.stiffness.resize(count + Neighbours::padding, 0.0);
 }
 
 }  // namespace
@@ -199,16 +189,23 @@ Neighbours find_neighbours(const Points& points, std::span<const double> V,
   rows.cut.assign(body.n, 0);
   rows.inverse_moment.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
   const Search search(points, V, kernel, penalty);
-  const std::vector<Piece> pieces = pieces_of(rows.blocks);
-  std::vector<Part> parts(pieces.size());
-  executor.for_each(pieces.size(), [&](std::size_t i) {
-    const auto& [first, last, block] = pieces[i];
-    search.find(first, last, rows.blocks[block], rows.blocks[block + 1], rows, parts[i]);
-  });
-  for (const Part& part : parts) {
-    if (part.singular >= 0) throw_too_few(body, kernel, part.singular, part.found);
+  std::vector<Piece> pieces = pieces_of(rows.blocks);
+  executor.for_each(pieces.size(), [&](std::size_t i) { search.count(pieces[i], rows); });
+  for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
+  const std::size_t count = rows.begin.back(), padded = count + Neighbours::padding;
+  rows.other.resize(count);
+  rows.weight.resize(padded);
+  if (penalty > 0) rows.stiffness.resize(padded);
+  executor.for_each(pieces.size(), [&](std::size_t i) { search.fill(pieces[i], rows); });
+  rows.lowest.assign(rows.blocks.begin(), rows.blocks.end() - 1);
+  rows.highest = rows.lowest;
+  for (const Piece& piece : pieces) {
+    if (piece.singular >= 0) throw_too_few(body, kernel, piece.singular, piece.found);
+    rows.directed += piece.directed;
+    Index& lowest = rows.lowest[piece.block];
+    Index& highest = rows.highest[piece.block];
+    lowest = std::min(lowest, piece.lowest), highest = std::max(highest, piece.highest);
   }
-  join(pieces, parts, penalty > 0, rows);
   return rows;
 }
 
