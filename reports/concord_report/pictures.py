@@ -81,7 +81,8 @@ def prepare(study, cases, store, warnings):
         if "missing" in job:
             who = " ".join(str(picture[k]) for k in ("method", "variant", "resolution") if picture.get(k))
             job["label"] = who
-            warnings.append(f"{study.name}: no picture of {who or 'the study'}: {job['missing']}")
+            remark = f"{study.name}: no picture of {who or 'the study'}: {job['missing']}"
+            warnings += [] if remark in warnings else [remark]  # once for all instants
         jobs.append(job)
     _share_scales([j for j in jobs if "missing" not in j])
     return jobs

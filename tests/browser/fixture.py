@@ -39,9 +39,9 @@ def frame(path, points, displacement, fields, connectivity=None, offsets=None, t
             root[f"PointData/{name}"] = data
 
 
-def series(folder, time):
-    (folder / "fields.hdf.series").write_text(json.dumps(
-        {"file-series-version": "1.0", "files": [{"name": "fields_0000.hdf", "time": time}]}))
+def series(folder, *times):
+    files = [{"name": f"fields_{k:04d}.hdf", "time": time} for k, time in enumerate(times)]
+    (folder / "fields.hdf.series").write_text(json.dumps({"file-series-version": "1.0", "files": files}))
 
 
 def lattice(n, size=(1, 1, 1)):
@@ -141,7 +141,7 @@ def patch(folder):
 
 
 def beam(folder):
-    """Histories, a deformed particle body, a missing column."""
+    """Histories of one and of several columns, bodies at instants, a missing column."""
     rows = []
     for method, variant, stiff in (("delaunay", "xi 1", 1.0), ("fem", "Q2", 1.02)):
         for n in (2, 4, 8):
@@ -150,24 +150,34 @@ def beam(folder):
             here = folder / made["run"]
             here.mkdir(parents=True)
             rate = stiff * 3.4 * (1 + 0.25 / n ** 2)
-            lines = [f"{t:.6g},{3.42 * (1 - 0.4 / n ** 2) * math.sin(rate * t):.6g}"
+            lines = [f"{t:.6g},{3.42 * (1 - 0.4 / n ** 2) * math.sin(rate * t):.6g},"
+                     f"{1e5 * math.cos(rate * t) ** 2:.6g},{1e5 * math.sin(rate * t) ** 2:.6g},{1e-9 * t:.6g}"
                      for t in np.linspace(0, 3, 900)]
-            (here / "history.csv").write_text("t_s,tip_z_m\n" + "\n".join(lines) + "\n")
+            (here / "history.csv").write_text(
+                "t_s,tip_z_m,kinetic_energy_J,internal_energy_J,energy_balance_J\n" + "\n".join(lines) + "\n")
             if n == 4:
                 points, shape = lattice(n, (6, 1, 1))
-                u = np.zeros_like(points)
-                u[:, 2] = 0.08 * points[:, 0] ** 2
-                u[:, 0] = -0.16 * points[:, 0] * (points[:, 2] - 0.5) - 0.009 * points[:, 0] ** 2
-                stress = 3e5 * (6 - points[:, 0]) * np.abs(points[:, 2] - 0.5) + 1e4
-                frame(here / "fields_0000.hdf", points, u, {"von_mises": stress, "velocity": u * 3},
-                      *(hexahedra(shape) if method == "fem" else ()))
-                series(here, 0.43)
+                for k, part in enumerate((-0.5, 0.5, 1)):
+                    u = np.zeros_like(points)
+                    u[:, 2] = 0.08 * part * points[:, 0] ** 2
+                    u[:, 0] = -0.16 * part * points[:, 0] * (points[:, 2] - 0.5) - 0.009 * part ** 2 * points[:, 0] ** 2
+                    stress = abs(part) * 3e5 * (6 - points[:, 0]) * np.abs(points[:, 2] - 0.5) + 1e4
+                    frame(here / f"fields_{k:04d}.hdf", points, u, {"von_mises": stress, "velocity": u * 3},
+                          *(hexahedra(shape) if method == "fem" else ()))
+                series(here, 0.1, 0.25, 0.43)
             rows.append(made)
     shots = [{"method": m, "variant": v, "resolution": 4, "color": "von_mises"}
              for m, v in (("delaunay", "xi 1"), ("fem", "Q2"))]
+    panels = [{k: v for k, v in shot.items() if k != "color"} | {"caption": shot["method"]} for shot in shots]
+    shots.append({"color": "von_mises", "times": [0.1, 0.25, 0.43], "caption": "At three instants", "range": "common",
+                  "panels": [*panels, {"method": "cbm", "caption": "cbm"}]})
+    energies = [f"{name}_J" for name in ("kinetic_energy", "internal_energy", "viscous_dissipation", "energy_balance")]
     return {"title": "Fixture: beam", "rows": rows, "pictures": shots, "claims": [
         claim("peak", "Largest deflection", "3.4 m", 3.401, ">= 3.35 and <= 3.45 m", unit="m")],
         "plots": [{"kind": "history", "quantity": "tip_z_m", "title": "Deflection of the tip"},
+                  {"kind": "history", "quantity": "tip_z_m", "title": "Every density beside FEM", "method": "delaunay",
+                   "baseline": [{"method": "fem", "label": "FEM"}]},
+                  {"kind": "history", "columns": energies, "method": "delaunay", "title": "Energies"},
                   {"kind": "history", "quantity": "no_such_column"}]}
 
 

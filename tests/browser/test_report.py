@@ -237,7 +237,7 @@ class Report(unittest.TestCase):
             self.assertNotIn(outside, html)
         self.assertIn("No picture of fem Q9 16", html)
         self.assertIn("no_such_column", html)
-        self.assertEqual(html.count("<img "), 23)
+        self.assertEqual(html.count("<img "), 29)
 
     def test_pictures_show_something(self):
         import base64
