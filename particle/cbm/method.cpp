@@ -45,11 +45,11 @@ class CbmMethod final : public ParticleMethod {
   }
   std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                          const scene::Settings& settings,
-                                         const Executor&) const override {
+                                         const Executor& executor) const override {
     delaunay::Parameters parameters;
     parameters.xi_n = settings.number("xi_n");
     parameters.xi_t = settings.number("xi_t");
-    return std::make_unique<delaunay::DelaunayModel>(body, problem, parameters);
+    return std::make_unique<delaunay::DelaunayModel>(body, problem, parameters, executor);
   }
 };
 

@@ -77,8 +77,8 @@ class ForceModel {
                          std::span<const double> v, std::span<double> f,
                          const Executor& executor);
 
-  /// The particles on whose state the forces on `part` depend: it and two rings of neighbours,
-  /// rounded up to a range.
+  /// The particles on whose state the forces on `part` depend: it and the rings of neighbours
+  /// that the method reaches, rounded up to a range.
   virtual ParticleRange reach(ParticleRange part) const;
 
   /// Energies at displacement u.

@@ -56,8 +56,38 @@ Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model,
   m_constraints.clear(m_v);
 }
 
+template <class Body> void Leapfrog::for_awake(const Body& body) const {
+  for (const ParticleRange& range : m_awake) {
+    const auto first = static_cast<std::size_t>(range.first);
+    m_executor.for_pieces(range.last - range.first, [&](std::size_t begin, std::size_t end) {
+      body(first + begin, first + end);
+    });
+  }
+}
+
+void Leapfrog::move_all() {
+  m_rest.reset();
+  m_awake_count = m_model.body().n;
+  m_awake = {{0, m_awake_count}};
+}
+
+/// After a drift: whom the next forces are computed for.
+void Leapfrog::follow_rest() {
+  m_rest->look(m_u, m_v);
+  if (m_rest->all_awake()) {
+    move_all();
+    return;
+  }
+  m_awake = m_rest->awake();
+  m_awake_count = 0;
+  for (const ParticleRange& range : m_awake) m_awake_count += range.last - range.first;
+}
+
 void Leapfrog::evaluate() {
-  m_model.forces(m_u, m_v, m_f, m_executor);
+  if (m_rest)
+    m_model.forces_of(m_awake, m_u, m_v, m_f, m_executor);
+  else
+    m_model.forces(m_u, m_v, m_f, m_executor);
   if (m_loads.none()) return;
   m_loads.add(load_time(), m_f);
 }
@@ -69,15 +99,16 @@ void Leapfrog::kick(double dt, double damping) {
   const auto range = m_model.body().dim == 3
                          ? (damped ? kick_range<3, true> : kick_range<3, false>)
                          : (damped ? kick_range<2, true> : kick_range<2, false>);
-  m_executor.for_pieces(m_inverse_mass.size(), [&](std::size_t begin, std::size_t end) {
+  for_awake([&](std::size_t begin, std::size_t end) {
     range(begin, end, keep, scale, m_inverse_mass.data(), m_f.data(), m_v.data());
   });
   m_constraints.clear(m_v);
 }
 
 void Leapfrog::drift(double dt) {
-  m_executor.for_pieces(m_u.size(), [&](std::size_t begin, std::size_t end) {
-    drift_range(begin, end, dt, m_v.data(), m_u.data());
+  const auto stride = static_cast<std::size_t>(m_model.body().stride);
+  for_awake([&](std::size_t begin, std::size_t end) {
+    drift_range(begin * stride, end * stride, dt, m_v.data(), m_u.data());
   });
   m_t += dt;
   if (!m_constraints.moving()) return;
@@ -189,6 +220,7 @@ void Leapfrog::step(double dt) {
   drift(dt);
   if (dissipates) m_dissipation.add(kick_dt, m_v);
   m_dt_last = dt;
+  if (m_rest) follow_rest();
   evaluate();
   if (features::plasticity) m_model.commit();
   m_in_step = false;
@@ -225,6 +257,7 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     const double size = left / std::ceil(left / dt * (1 - 1e-12));
     const bool last = left - size < 1e-9 * size;
     step(size);
+    outcome.particle_steps += m_awake_count;
     if (last) m_t = end;
     ++outcome.steps;
     outcome.t = m_t;
@@ -258,6 +291,11 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     return SolveError(bad.quantity, step, m_t, bad.particle,
                       bad.quantity == "det F" ? "det F <= 0 or not a number" : "");
   };
+  move_all();
+  if (options.rest_regions && m_model.has_parts()) {
+    m_rest.emplace(m_model, m_constraints, m_loads, m_u, m_v);
+    follow_rest();
+  }
   try {
     evaluate();
     m_model.commit();

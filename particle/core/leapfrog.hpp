@@ -2,10 +2,12 @@
 // The one explicit integrator of all particle methods: leapfrog (central differences).
 
 #include "particle/core/recorder.hpp"
+#include "particle/core/rest_regions.hpp"
 #include "particle/core/stable_step.hpp"
 #include "particle/core/work.hpp"
 
 #include <functional>
+#include <optional>
 
 namespace concord::particle {
 
@@ -20,6 +22,9 @@ struct LeapfrogOptions {
   /// omega_max is asked for again when the largest |H| of any particle changed by this much
   /// since the last estimate.
   double reestimate_at = 0.05;
+  /// Regions still exactly at rest are left out, by models that can (RestRegions); the same
+  /// bits.
+  bool rest_regions = true;
   std::function<void(double, const std::string&)> progress;
   /// > 0: loads and prescribed displacements are those of min(t / ramp_time, 1): static
   /// problems by damped dynamics.
@@ -31,10 +36,11 @@ struct LeapfrogOptions {
 
 struct LeapfrogOutcome {
   long steps = 0;
-  double dt = 0;         ///< last step [s]
-  double t = 0;          ///< time reached [s]
-  double loop_s = 0;     ///< wall time of the loop without output
-  bool settled = false;  ///< stopped by stop_at_residual
+  double dt = 0;              ///< last step [s]
+  double t = 0;               ///< time reached [s]
+  double loop_s = 0;          ///< wall time of the loop without output
+  bool settled = false;       ///< stopped by stop_at_residual
+  double particle_steps = 0;  ///< particles whose forces were computed, summed over the steps
 };
 
 /// v_{n+1/2} = v_{n-1/2} + dt f(u_n)/m, u_{n+1} = u_n + dt v_{n+1/2}: second order, symplectic
@@ -62,6 +68,10 @@ class Leapfrog {
       64;  ///< steps between looks at the deformation (for omega_max) and the residual
   void evaluate();
   void step(double dt);
+  void follow_rest();
+  void move_all();
+  /// body(begin, end) over the particles that are worked on.
+  template <class Body> void for_awake(const Body& body) const;
   void step_back();
   void advance(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
   void write(Recorder& recorder, bool row, bool frame);
@@ -79,7 +89,10 @@ class Leapfrog {
   double m_ramp;
   std::vector<double> m_inverse_mass;
   Column m_u, m_v, m_f;  ///< displacement, half-step velocity, total force on all components
-  Column m_v_full, m_acceleration;  ///< for output
+  Column m_v_full, m_acceleration;     ///< for output
+  std::optional<RestRegions> m_rest;   ///< while some particles are left out
+  std::vector<ParticleRange> m_awake;  ///< particles that are worked on
+  Index m_awake_count = 0;
   ExternalWork m_work;
   Dissipation m_dissipation;
   double m_t = 0, m_dt_last = 0, m_damping = 0;

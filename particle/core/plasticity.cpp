@@ -237,15 +237,17 @@ template <int Dim>
 void PlasticHistory::stress_of(Index first, int lane,
                                const double (&h)[Dim * Dim][plastic_width],
                                double (&p)[Dim * Dim][plastic_width],
-                               double (&j)[plastic_width]) {
+                               double (&j)[plastic_width], bool keep) {
   const Index a = first + lane;
   Mat3 H = Mat3::Zero();
   for (int k = 0; k < Dim * Dim; ++k) H(k % Dim, k / Dim) = h[k][lane];
   const J2Hencky::Update u = m_law.update(H, committed(a));
-  for (int k = 0; k < 3; ++k) m_new[k][a] = u.state.A(k, k);
-  m_new[3][a] = u.state.A(0, 1);
-  if constexpr (Dim == 3) m_new[4][a] = u.state.A(1, 2), m_new[5][a] = u.state.A(2, 0);
-  m_new[m_components][a] = u.state.eps_p;
+  if (keep) {
+    for (int k = 0; k < 3; ++k) m_new[k][a] = u.state.A(k, k);
+    m_new[3][a] = u.state.A(0, 1);
+    if constexpr (Dim == 3) m_new[4][a] = u.state.A(1, 2), m_new[5][a] = u.state.A(2, 0);
+    m_new[m_components][a] = u.state.eps_p;
+  }
   for (int k = 0; k < Dim * Dim; ++k) p[k][lane] = u.P(k % Dim, k / Dim);
   j[lane] = u.sound ? scene::volume_change(H) : std::numeric_limits<double>::quiet_NaN();
 }
@@ -258,16 +260,18 @@ void PlasticHistory::note_trial() {
 }
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[9][plastic_width],
-                            double (&p)[9][plastic_width], double (&j)[plastic_width]) {
+                            double (&p)[9][plastic_width], double (&j)[plastic_width],
+                            bool keep) {
   assert(first >= 0 && first + count <= m_n);
-  note_trial();
-  for (int l = 0; l < count; ++l) stress_of<3>(first, l, h, p, j);
+  if (keep) note_trial();
+  for (int l = 0; l < count; ++l) stress_of<3>(first, l, h, p, j, keep);
 }
 
 void PlasticHistory::stress(Index first, int count, const double (&h)[4][plastic_width],
-                            double (&p)[4][plastic_width], double (&j)[plastic_width]) {
+                            double (&p)[4][plastic_width], double (&j)[plastic_width],
+                            bool keep) {
   assert(first >= 0 && first + count <= m_n);
-  note_trial();
+  if (keep) note_trial();
   PlaneStates old, next;
   double(*const from[])[plastic_width] = {&old.A11, &old.A22, &old.A33, &old.A12, &old.eps_p};
   for (int k = 0; k < 5; ++k)  // the columns are padded by a group
@@ -276,9 +280,9 @@ void PlasticHistory::stress(Index first, int count, const double (&h)[4][plastic
       {m_law.shear_modulus(), m_law.bulk_modulus(), m_law.hardening()}, h, old, next, p, j);
   const double(*const to[])[plastic_width] = {&next.A11, &next.A22, &next.A33, &next.A12,
                                               &next.eps_p};
-  for (int k = 0; k < 5; ++k) std::copy_n(*to[k], count, m_new[k].data() + first);
+  for (int k = 0; keep && k < 5; ++k) std::copy_n(*to[k], count, m_new[k].data() + first);
   for (beyond &= (1u << count) - 1; beyond != 0; beyond &= beyond - 1)
-    stress_of<2>(first, std::countr_zero(beyond), h, p, j);
+    stress_of<2>(first, std::countr_zero(beyond), h, p, j, keep);
 }
 
 void PlasticHistory::hold(bool on) {

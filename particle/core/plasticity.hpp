@@ -72,11 +72,12 @@ class PlasticHistory {
 
   /// Stress kernel of `count` <= 8 consecutive particles, the lanes beyond unused: h_ij of
   /// H = F - I in h[Dim j + i][lane], first Piola stress likewise in p, J - 1 in j (NaN where
-  /// the law finds no state). Writes the trial state of these particles alone.
+  /// the law finds no state). Writes the trial state of these particles alone, and none unless
+  /// told to keep it.
   void stress(Index first, int count, const double (&h)[9][plastic_width],
-              double (&p)[9][plastic_width], double (&j)[plastic_width]);
+              double (&p)[9][plastic_width], double (&j)[plastic_width], bool keep = true);
   void stress(Index first, int count, const double (&h)[4][plastic_width],
-              double (&p)[4][plastic_width], double (&j)[plastic_width]);
+              double (&p)[4][plastic_width], double (&j)[plastic_width], bool keep = true);
 
   /// The trial state of the last force evaluation becomes the committed one. No copy.
   void commit();
@@ -89,7 +90,7 @@ class PlasticHistory {
   /// The same for one lane, by J2Hencky::update.
   template <int Dim>
   void stress_of(Index first, int lane, const double (&h)[Dim * Dim][plastic_width],
-                 double (&p)[Dim * Dim][plastic_width], double (&j)[plastic_width]);
+                 double (&p)[Dim * Dim][plastic_width], double (&j)[plastic_width], bool keep);
   void note_trial();
 
   scene::Material m_material;

@@ -40,7 +40,13 @@ template <int Dim> using Vec = typename Lanes<Dim>::type;
 /// Doubles from one particle to the next in a column of vectors.
 constexpr int stride_of(int dim) { return dim == 3 ? 4 : 2; }
 
-CONCORD_INLINE v4d broadcast(double s, v4d) { return v4d{s, s, s, s}; }
+/// s in all lanes. As a shuffle: g++ 12 makes {s, s, s, s} of two instructions even where one
+/// loads and spreads.
+CONCORD_INLINE v4d broadcast(double s, v4d) {
+  typedef long long v4i __attribute__((vector_size(32)));
+  const v4d first{s, 0, 0, 0};
+  return __builtin_shuffle(first, first, v4i{0, 4, 0, 4});
+}
 CONCORD_INLINE v2d broadcast(double s, v2d) { return v2d{s, s}; }
 
 /// Lane k of a vector in all lanes, without a way through memory.
@@ -56,6 +62,32 @@ template <int k> CONCORD_INLINE v2d lane(v2d a) {
 /// Sum over the lanes in a fixed order.
 CONCORD_INLINE double lane_sum(v4d a) { return (a[0] + a[2]) + (a[1] + a[3]); }
 CONCORD_INLINE double lane_sum(v2d a) { return a[0] + a[1]; }
+
+/// Sums over the lanes of two vectors: {sum a, sum b}.
+CONCORD_INLINE v2d lane_sums(v4d a, v4d b) {
+  typedef long long v4i __attribute__((vector_size(32)));
+  const v4d h =
+      __builtin_shuffle(a, b, v4i{0, 4, 2, 6}) + __builtin_shuffle(a, b, v4i{1, 5, 3, 7});
+  const v4d sums = h + __builtin_shuffle(h, v4i{2, 3, 0, 1});
+  return v2d{sums[0], sums[1]};
+}
+CONCORD_INLINE v2d lane_sums(v2d a, v2d b) {
+  typedef long long v2i __attribute__((vector_size(16)));
+  return __builtin_shuffle(a, b, v2i{0, 2}) + __builtin_shuffle(a, b, v2i{1, 3});
+}
+
+/// Four vectors as the rows of a matrix become its columns.
+CONCORD_INLINE void transpose(v4d& a, v4d& b, v4d& c, v4d& d) {
+  typedef long long v4i __attribute__((vector_size(32)));
+  const v4d ab_even = __builtin_shuffle(a, b, v4i{0, 4, 2, 6}),
+            ab_odd = __builtin_shuffle(a, b, v4i{1, 5, 3, 7}),
+            cd_even = __builtin_shuffle(c, d, v4i{0, 4, 2, 6}),
+            cd_odd = __builtin_shuffle(c, d, v4i{1, 5, 3, 7});
+  a = __builtin_shuffle(ab_even, cd_even, v4i{0, 1, 4, 5});
+  b = __builtin_shuffle(ab_odd, cd_odd, v4i{0, 1, 4, 5});
+  c = __builtin_shuffle(ab_even, cd_even, v4i{2, 3, 6, 7});
+  d = __builtin_shuffle(ab_odd, cd_odd, v4i{2, 3, 6, 7});
+}
 
 template <class V> CONCORD_INLINE V load(const double* p) {
   return *reinterpret_cast<const V*>(p);

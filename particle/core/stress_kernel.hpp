@@ -30,6 +30,7 @@ enum class StressLaw {
 struct StressConstants {
   LameConstants lame;
   PlasticHistory* history = nullptr;  ///< of plastic laws, else unused
+  bool keep_trial = true;             ///< plastic laws: whether the trial state is written
 };
 
 template <StressLaw Law>
@@ -149,8 +150,10 @@ CONCORD_INLINE void logarithms(const LameConstants& c, const double (&j)[stress_
     log_j[l] = log1p_near_one(j[l]);
     largest = std::max(largest, std::abs(j[l]));
   }
-  if (largest > 0.25) {
-    for (int l = 0; l < stress_width; ++l) log_j[l] = std::log1p(std::max(j[l], -1.0));
+  if (largest > 0.25) {  // each lane by its own size: no lane looks at another's values
+    for (int l = 0; l < stress_width; ++l) {
+      if (std::abs(j[l]) > 0.25) log_j[l] = std::log1p(std::max(j[l], -1.0));
+    }
   }
   if constexpr (Law == StressLaw::neo_hookean_plane_stress) {
     for (int l = 0; l < stress_width; ++l) log_j[l] = plane_stress_log(c, log_j[l]);
@@ -166,7 +169,9 @@ CONCORD_INLINE void isochoric_powers(const double (&log_j)[stress_width],
     far |= std::abs(log_j[l]) > 0.3;
   }
   if (far != 0) {
-    for (int l = 0; l < stress_width; ++l) power[l] = std::exp(-2.0 / 3 * log_j[l]);
+    for (int l = 0; l < stress_width; ++l) {
+      if (std::abs(log_j[l]) > 0.3) power[l] = std::exp(-2.0 / 3 * log_j[l]);
+    }
   }
 }
 
@@ -279,6 +284,22 @@ CONCORD_INLINE void stress(const LameConstants& c, const double (&h)[Dim * Dim][
   }
 }
 
+/// Stress of the lanes of `count` <= W consecutive particles from `first` on, h and p as in
+/// stress(). Returns a bit a particle with det F <= 0 or NaN.
+template <int Dim, StressLaw Law>
+CONCORD_INLINE unsigned stress_of_lanes(const StressConstants& c, Index first, int count,
+                                        const double (&h)[Dim * Dim][stress_width],
+                                        double (&p)[Dim * Dim][stress_width]) {
+  double j[stress_width];
+  if constexpr (Law == StressLaw::j2_hencky)
+    c.history->stress(first, count, h, p, j, c.keep_trial);
+  else
+    stress<Dim, Law>(c.lame, h, p, j);
+  unsigned bad = 0;
+  for (int l = 0; l < count; ++l) bad |= (j[l] > -1.0 ? 0u : 1u) << l;
+  return bad;
+}
+
 /// Stress of `count` <= W consecutive particles. H holds V_a H_a on entry and H_a on return; P
 /// is written; both are columns of Dim vectors a particle. Returns a bit a particle with det F
 /// <= 0 or NaN.
@@ -286,7 +307,7 @@ template <int Dim, StressLaw Law>
 CONCORD_INLINE unsigned stress_of_group(const StressConstants& c, Index first, int count,
                                         const double* inverse_V, double* H, double* P) {
   constexpr int S = Lanes<Dim>::stride;
-  double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width], j[stress_width];
+  double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width];
   for (int l = 0; l < stress_width; ++l) {
     const int a = l < count ? l : count - 1;
     const double scale = inverse_V[a];
@@ -297,11 +318,7 @@ CONCORD_INLINE unsigned stress_of_group(const StressConstants& c, Index first, i
       for (int i = 0; i < Dim; ++i) h[k * Dim + i][l] = l < count ? column[i] : 0.0;
     }
   }
-  if constexpr (Law == StressLaw::j2_hencky)
-    c.history->stress(first, count, h, p, j);
-  else
-    stress<Dim, Law>(c.lame, h, p, j);
-  unsigned bad = 0;
+  const unsigned bad = stress_of_lanes<Dim, Law>(c, first, count, h, p);
   for (int l = 0; l < count; ++l) {
     double* Pa = P + static_cast<std::size_t>(l) * Dim * S;
     for (int k = 0; k < Dim; ++k) {
@@ -309,7 +326,6 @@ CONCORD_INLINE unsigned stress_of_group(const StressConstants& c, Index first, i
       for (int i = 0; i < Dim; ++i) column[i] = p[k * Dim + i][l];
       store(Pa + k * S, column);
     }
-    if (!(j[l] > -1.0)) bad |= 1u << l;
   }
   return bad;
 }

@@ -6,63 +6,138 @@
 namespace concord::particle::delaunay {
 namespace {
 
-/// One directed contribution |t| g_b / (n+1) of a simplex to B_ab, filed under the
-/// lower-numbered particle.
-struct Contribution {
-  Index low, high;
-  Vec3 B_low_high, B_high_low;
-};
+/// Simplices at each particle, ascending.
+struct Stars {
+  std::vector<Index> begin, simplex;
 
-}  // namespace
-
-std::vector<Bond> gradient_vectors(const Body& body) {
-  const Triangulation& t = body.triangulation;
-  const int nv = t.dim + 1;
-  std::vector<Index> start(body.n + 1, 0);  // counting sort by the lower particle
-  for (std::size_t s = 0; s < t.size(); ++s) {
-    for (int i = 0; i < nv; ++i) {
-      for (int j = 0; j < i; ++j)
-        ++start[std::min(t.simplices[s * nv + i], t.simplices[s * nv + j]) + 1];
+  explicit Stars(const Body& body) : begin(body.n + 1, 0) {
+    const Triangulation& t = body.triangulation;
+    const int nv = t.dim + 1;
+    for (const Index a : t.simplices) ++begin[a + 1];
+    for (Index a = 0; a < body.n; ++a) begin[a + 1] += begin[a];
+    simplex.resize(t.simplices.size());
+    std::vector<Index> next(begin.begin(), begin.end() - 1);
+    for (std::size_t s = 0; s < t.size(); ++s) {
+      for (int i = 0; i < nv; ++i)
+        simplex[next[t.simplices[s * nv + i]]++] = static_cast<Index>(s);
     }
   }
-  for (Index a = 0; a < body.n; ++a) start[a + 1] += start[a];
-  std::vector<Contribution> parts(start[body.n]);
-  std::vector<Index> next(start.begin(), start.end() - 1);
+};
+
+/// Appends the bonds of particle a with b > a, ascending. Both ends of a bond see the same
+/// simplices in the same order.
+void append_row(const Body& body, const Stars& stars, Index a, std::vector<Bond>& bonds) {
+  const Triangulation& t = body.triangulation;
+  const int nv = t.dim + 1;
+  const auto row = static_cast<std::ptrdiff_t>(bonds.size());
   std::array<Vec3, 4> X, g;
-  for (std::size_t s = 0; s < t.size(); ++s) {
-    const Index* v = &t.simplices[s * nv];
+  for (Index k = stars.begin[a]; k < stars.begin[a + 1]; ++k) {
+    const Index* v = &t.simplices[static_cast<std::size_t>(stars.simplex[k]) * nv];
     for (int i = 0; i < nv; ++i) X[i] = body.position(v[i]);
     // B_ab is the integral over a positively oriented simplex; a flat one may carry either sign
     // and the same areas.
     (void)volume_gradients(t.dim, X, g);
     const double scale = body.thickness / nv;
+    const auto own = std::find(v, v + nv, a) - v;
     for (int i = 0; i < nv; ++i) {
-      for (int j = 0; j < i; ++j) {
-        const int low = v[i] < v[j] ? i : j, high = low == i ? j : i;
-        parts[next[v[low]]++] = {v[low], v[high], scale * g[high], scale * g[low]};
-      }
+      if (v[i] <= a) continue;
+      auto bond = std::find_if(bonds.begin() + row, bonds.end(),
+                               [&](const Bond& known) { return known.b == v[i]; });
+      if (bond == bonds.end())
+        bond = bonds.insert(bonds.end(), {a, v[i], Vec3::Zero(), Vec3::Zero()});
+      bond->B_ab += scale * g[i];
+      bond->B_ba += scale * g[own];
     }
   }
-  std::vector<Bond> bonds;
-  bonds.reserve(parts.size() / 4);
-  for (Index a = 0; a < body.n; ++a) {
-    const auto first = parts.begin() + start[a], last = parts.begin() + start[a + 1];
-    std::stable_sort(first, last, [](const Contribution& p, const Contribution& q) {
-      return p.high < q.high;
-    });
-    for (auto p = first; p != last; ++p) {
-      if (p == first || p->high != (p - 1)->high)
-        bonds.push_back({a, p->high, Vec3::Zero(), Vec3::Zero()});
-      bonds.back().B_ab += p->B_low_high;
-      bonds.back().B_ba += p->B_high_low;
-    }
-  }
+  std::sort(bonds.begin() + row, bonds.end(),
+            [](const Bond& p, const Bond& q) { return p.b < q.b; });
   // Off the boundary B_ba = -B_ab holds exactly (30); make it hold to the last bit.
-  for (Bond& bond : bonds) {
-    if (t.on_boundary[bond.a] && t.on_boundary[bond.b]) continue;
-    bond.B_ab = 0.5 * (bond.B_ab - bond.B_ba);
-    bond.B_ba = -bond.B_ab;
+  for (auto bond = bonds.begin() + row; bond != bonds.end(); ++bond) {
+    if (t.on_boundary[bond->a] && t.on_boundary[bond->b]) continue;
+    bond->B_ab = 0.5 * (bond->B_ab - bond->B_ba);
+    bond->B_ba = -bond->B_ab;
   }
+}
+
+/// Rows of a range of particles, before they are put together.
+struct Piece {
+  std::vector<Index> length, other, surface_length, surface_other;
+  Column B, area_over_length, B_symmetric;
+};
+
+void append(Column& column, int dim, const Vec3& v) {
+  for (int i = 0; i < dim; ++i) column.push_back(v[i]);
+}
+
+void append_bond(const Body& body, const Bond& bond, bool contact, Piece& piece) {
+  piece.other.push_back(bond.b);
+  append(piece.B, body.dim, 0.5 * (bond.B_ab - bond.B_ba));
+  if (contact) {
+    const double L = (body.position(bond.b) - body.position(bond.a)).norm();
+    piece.area_over_length.push_back(interface_area(body.dim, bond) / L);
+  }
+  const std::vector<char>& on_boundary = body.triangulation.on_boundary;
+  if (!on_boundary[bond.a] || !on_boundary[bond.b]) return;
+  piece.surface_other.push_back(bond.b);
+  append(piece.B_symmetric, body.dim, 0.5 * (bond.B_ab + bond.B_ba));
+}
+
+Piece make_piece(const Body& body, const Stars& stars, Index first, Index last, bool contact) {
+  Piece piece;
+  std::vector<Bond> row;
+  for (Index a = first; a < last; ++a) {
+    row.clear();
+    append_row(body, stars, a, row);
+    const std::size_t before = piece.surface_other.size();
+    for (const Bond& bond : row) append_bond(body, bond, contact, piece);
+    piece.length.push_back(static_cast<Index>(row.size()));
+    if (body.triangulation.on_boundary[a])
+      piece.surface_length.push_back(static_cast<Index>(piece.surface_other.size() - before));
+  }
+  return piece;
+}
+
+template <class T> void take(T& all, T& part) {
+  all.insert(all.end(), part.begin(), part.end());
+  T().swap(part);
+}
+
+/// B_aa = -sum_b B_ab of the boundary particles.
+void close_surface(const Body& body, Bonds& bonds) {
+  SurfaceBonds& s = bonds.surface;
+  const int dim = body.dim;
+  std::vector<Index> place(body.n, -1);
+  for (std::size_t k = 0; k < s.particle.size(); ++k)
+    place[s.particle[k]] = static_cast<Index>(k);
+  s.B_self.assign(s.particle.size() * dim, 0.0);
+  const auto subtract = [&](Index a, double sign, const double* B) {
+    if (place[a] < 0) return;
+    for (int i = 0; i < dim; ++i)
+      s.B_self[static_cast<std::size_t>(place[a]) * dim + i] -= sign * B[i];
+  };
+  for (Index a = 0; a < body.n; ++a) {
+    for (Index k = bonds.begin[a]; k < bonds.begin[a + 1]; ++k) {
+      const double* B = &bonds.B[static_cast<std::size_t>(k) * dim];
+      subtract(a, 1, B);
+      subtract(bonds.other[k], -1, B);
+    }
+  }
+  for (std::size_t p = 0; p < s.particle.size(); ++p) {
+    for (Index k = s.begin[p]; k < s.begin[p + 1]; ++k) {
+      const double* B = &s.B_symmetric[static_cast<std::size_t>(k) * dim];
+      subtract(s.particle[p], 1, B);
+      subtract(s.other[k], 1, B);
+    }
+  }
+  s.particle.push_back(body.n);
+}
+
+}  // namespace
+
+std::vector<Bond> gradient_vectors(const Body& body) {
+  const Stars stars(body);
+  std::vector<Bond> bonds;
+  for (Index a = 0; a < body.n; ++a) append_row(body, stars, a, bonds);
   return bonds;
 }
 
@@ -70,95 +145,70 @@ double interface_area(int dim, const Bond& bond) {
   return (dim + 1) * 0.5 * (bond.B_ab.norm() + bond.B_ba.norm());
 }
 
-namespace {
+Bonds make_bonds(const Body& body, bool contact, const Executor& executor) {
+  const Stars stars(body);
+  std::vector<Piece> pieces(Executor::pieces(body.n));
+  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
+    pieces[first / Executor::piece] =
+        make_piece(body, stars, static_cast<Index>(first), static_cast<Index>(last), contact);
+  });
+  std::size_t count = 0;
+  for (const Piece& piece : pieces) count += piece.other.size();
+  Bonds bonds;
+  bonds.begin.assign(1, 0);
+  bonds.begin.reserve(body.n + 1);
+  bonds.other.reserve(count + bond_padding);
+  bonds.B.reserve(count * body.dim + bond_padding);
+  if (contact) bonds.area_over_length.reserve(count + bond_padding);
+  SurfaceBonds& s = bonds.surface;
+  s.begin.assign(1, 0);
+  for (Piece& piece : pieces) {
+    for (const Index length : piece.length) bonds.begin.push_back(bonds.begin.back() + length);
+    for (const Index length : piece.surface_length) s.begin.push_back(s.begin.back() + length);
+    take(bonds.other, piece.other);
+    take(bonds.B, piece.B);
+    take(bonds.area_over_length, piece.area_over_length);
+    take(s.other, piece.surface_other);
+    take(s.B_symmetric, piece.B_symmetric);
+  }
+  if (contact) bonds.area_over_length.insert(bonds.area_over_length.end(), bond_padding, 0.0);
+  for (Index a = 0; a < body.n; ++a) {
+    if (body.triangulation.on_boundary[a]) s.particle.push_back(a);
+  }
+  close_surface(body, bonds);
+  return bonds;
+}
 
-/// Where a bond goes: block and row, and whether it is kept there as a cut bond seen from
-/// `own`.
-struct Place {
-  Index block, row;
-  bool cut;
-  Index other;
-  const Bond* bond;
-  bool reversed;  ///< seen from bond->b
-  double area_over_length;
-};
-
-void append(const Body& body, BondRows& rows, const Place& p, bool surface) {
-  const Vec3& forward = p.reversed ? p.bond->B_ba : p.bond->B_ab;
-  const Vec3& backward = p.reversed ? p.bond->B_ab : p.bond->B_ba;
-  rows.other.push_back(p.other);
-  const auto record = [&](Column& column, const Vec3& B) {
-    double r[bond_record] = {0, 0, 0, 0};
-    for (int i = 0; i < body.dim; ++i) r[i] = B[i];
-    r[body.dim] = p.area_over_length;
-    column.insert(column.end(), r, r + bond_record);
+Bond bond_of(const Bonds& bonds, int dim, Index a, Index k) {
+  Bond bond{a, bonds.other[k], Vec3::Zero(), Vec3::Zero()};
+  const auto vector = [&](const Column& column, std::size_t at) {
+    Vec3 v = Vec3::Zero();
+    for (int i = 0; i < dim; ++i) v[i] = column[at * dim + i];
+    return v;
   };
-  record(rows.B, forward);
-  if (surface) record(rows.B_reverse, backward);
+  bond.B_ab = vector(bonds.B, k);
+  bond.B_ba = -bond.B_ab;
+  const SurfaceBonds& s = bonds.surface;
+  const auto row = std::lower_bound(s.particle.begin(), s.particle.end(), a);
+  if (row == s.particle.end() || *row != a) return bond;
+  const auto r = row - s.particle.begin();
+  if (static_cast<std::size_t>(r) + 1 >= s.begin.size()) return bond;
+  for (Index m = s.begin[r]; m < s.begin[r + 1]; ++m) {
+    if (s.other[m] != bond.b) continue;
+    const Vec3 symmetric = vector(s.B_symmetric, m);
+    bond.B_ab += symmetric;
+    bond.B_ba += symmetric;
+  }
+  return bond;
 }
 
-void fill_rows(const Body& body, BondRows& rows, Index row_count,
-               const std::vector<Place>& places, bool surface) {
-  rows.begin.assign(1, 0);
-  std::size_t next = 0;
-  for (Index r = 0; r < row_count; ++r) {
-    Index cut_begin = -1;
-    for (; next < places.size() && places[next].row == r; ++next) {
-      if (places[next].cut && cut_begin < 0) cut_begin = static_cast<Index>(rows.other.size());
-      append(body, rows, places[next], surface);
-    }
-    const Index end = static_cast<Index>(rows.other.size());
-    rows.cut.push_back(cut_begin < 0 ? end : cut_begin);
-    rows.begin.push_back(end);
-  }
-}
-
-}  // namespace
-
-Bonds block_bonds(const Body& body, const std::vector<Bond>& bonds,
-                  const std::vector<double>& area_over_length) {
-  const std::vector<Index> begin = fixed_blocks(body.n);
-  const Index block_count = static_cast<Index>(begin.size()) - 1;
-  const auto block_of = [&](Index a) {
-    return static_cast<Index>(std::upper_bound(begin.begin(), begin.end(), a) - begin.begin()) -
-           1;
-  };
-  std::vector<std::array<std::vector<Place>, 2>> places(block_count);  // [regular, surface]
-  for (std::size_t k = 0; k < bonds.size(); ++k) {
-    const Bond& bond = bonds[k];
-    const bool surface =
-        body.triangulation.on_boundary[bond.a] && body.triangulation.on_boundary[bond.b];
-    const double ratio = area_over_length.empty() ? 0.0 : area_over_length[k];
-    const Index block_a = block_of(bond.a), block_b = block_of(bond.b);
-    const bool cut = block_a != block_b;
-    places[block_a][surface].push_back(
-        {block_a, bond.a - begin[block_a], cut, bond.b, &bond, false, ratio});
-    if (cut)
-      places[block_b][surface].push_back(
-          {block_b, bond.b - begin[block_b], true, bond.a, &bond, true, ratio});
-  }
-  Bonds result;
-  result.count = bonds.size();
-  result.blocks.resize(block_count);
-  for (Index k = 0; k < block_count; ++k) {
-    BondBlock& block = result.blocks[k];
-    block.first = begin[k];
-    block.last = begin[k + 1];
-    for (auto& list : places[k]) {
-      std::stable_sort(list.begin(), list.end(), [](const Place& p, const Place& q) {
-        return std::tie(p.row, p.cut, p.other) < std::tie(q.row, q.cut, q.other);
-      });
-    }
-    fill_rows(body, block.regular, block.last - block.first, places[k][0], false);
-    fill_rows(body, block.surface, block.last - block.first, places[k][1], true);
-  }
-  return result;
-}
-
-GradientRows directed_rows(const Body& body, const std::vector<Bond>& bonds) {
+GradientRows directed_rows(const Body& body, const Bonds& bonds) {
   GradientRows rows;
   rows.begin.assign(body.n + 1, 0);
-  for (const Bond& bond : bonds) ++rows.begin[bond.a + 1], ++rows.begin[bond.b + 1];
+  for (Index a = 0; a < body.n; ++a) {
+    for (Index k = bonds.begin[a]; k < bonds.begin[a + 1]; ++k)
+      ++rows.begin[a + 1], ++rows.begin[bonds.other[k] + 1];
+  }
   for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
   rows.neighbour.resize(rows.begin.back());
   rows.g.resize(rows.begin.back());
@@ -167,9 +217,12 @@ GradientRows directed_rows(const Body& body, const std::vector<Bond>& bonds) {
     rows.neighbour[next[a]] = b;
     rows.g[next[a]++] = B / body.V[a];
   };
-  for (const Bond& bond : bonds) {
-    add(bond.a, bond.b, bond.B_ab);
-    add(bond.b, bond.a, bond.B_ba);
+  for (Index a = 0; a < body.n; ++a) {
+    for (Index k = bonds.begin[a]; k < bonds.begin[a + 1]; ++k) {
+      const Bond bond = bond_of(bonds, body.dim, a, k);
+      add(bond.a, bond.b, bond.B_ab);
+      add(bond.b, bond.a, bond.B_ba);
+    }
   }
   return rows;
 }

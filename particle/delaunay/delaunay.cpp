@@ -1,99 +1,227 @@
 #include "particle/delaunay/delaunay.hpp"
 
 #include "particle/core/features.hpp"
-#include "particle/delaunay/kernels.hpp"
 
+#include <atomic>
 #include <cmath>
 
 namespace concord::particle::delaunay {
 
-DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
-                             const Parameters& parameters)
-    : ForceModel(body, problem) {
-  m_pairs = gradient_vectors(body);
-  m_contact = parameters.xi_n > 0 || parameters.xi_t > 0;
-  const double E = problem.material.E, G = problem.material.mu;
-  if (m_contact) {
-    m_stiffness.reserve(m_pairs.size());
-    for (const Bond& bond : m_pairs) {
-      const double L = (body.position(bond.b) - body.position(bond.a)).norm();
-      m_stiffness.push_back(interface_area(body.dim, bond) / L);
-    }
-    m_normal_factor = parameters.xi_n * E;
-    m_tangential_factor = parameters.xi_t * G;
+/// What one worker's sweep needs beside the model: windows over particles, buffers.
+class DelaunayModel::Space {
+ public:
+  Space(const Bonds& bonds, const Reach& reach, int dim, bool contact, bool viscous)
+      : buffer(bonds, dim, contact), m_mask(reach.window() - 1) {
+    const std::size_t size = reach.window() * (dim == 3 ? record_size<3> : record_size<2>);
+    m_H.assign(size, 0.0);
+    m_P = m_H;
+    if (viscous) m_rate = m_H;
   }
-  m_bonds = block_bonds(body, m_pairs, m_stiffness);
+  template <int Dim> Window<Dim> H() { return {m_H.data(), m_mask}; }
+  template <int Dim> Window<Dim> P() { return {m_P.data(), m_mask}; }
+  template <int Dim> Window<Dim> rate() { return {m_rate.data(), m_mask}; }
+
+  ContactBuffer buffer;
+
+ private:
+  std::size_t m_mask;
+  Column m_H, m_P, m_rate;
+};
+
+/// One pass over a range of particles: gradients run ahead of contact and stress, these ahead
+/// of forces, by what the rows of bonds reach. Sweeps recompute what they share with others.
+template <int Dim> class DelaunayModel::Sweep {
+ public:
+  Sweep(DelaunayModel& model, Space& space, const double* u, const double* v)
+      : m_model(model), m_reach(model.m_reach), m_bonds(model.m_bonds), m_u(u), m_v(v),
+        m_H(space.H<Dim>()), m_P(space.P<Dim>()), m_rate(space.rate<Dim>()),
+        m_buffer(space.buffer) {}
+
+  /// f of the particles of `part`. Returns the first particle met with det F <= 0 or NaN, or
+  /// -1.
+  Index forces(ParticleRange part, double* f) {
+    m_part = part;
+    Index done = m_reach.bottom(part.first);  // rows that add to the part's forces
+    m_stresses = m_opened_P = contact() ? m_reach.bottom(done) : done;
+    start_gradients(m_stresses);
+    while (done < part.last) {
+      const Index last = std::min(done + Reach::chunk, part.last);
+      stresses_to(m_reach.top(last));
+      force_rows<Dim>(m_bonds, done, last, m_P);
+      if (last > part.first) copy_vectors<Dim>(m_P, std::max(done, part.first), last, f);
+      done = last;
+    }
+    return m_bad;
+  }
+
+  /// use(first, last, H) for the particles of `part`, with H complete there and at the ends of
+  /// their rows.
+  template <class Use> void gradients(ParticleRange part, const Use& use) {
+    start_gradients(part.first);
+    for (Index first = part.first; first < part.last; first += Reach::chunk) {
+      const Index last = std::min(first + Reach::chunk, part.last);
+      gradients_to(m_reach.top(last));
+      use(first, last, m_H);
+    }
+  }
+
+ private:
+  bool contact() const { return features::contact && m_model.m_contact; }
+  bool viscous() const { return features::viscosity && m_model.m_viscosity; }
+
+  /// H is wanted from particle `first` on.
+  void start_gradients(Index first) { m_gradients = m_opened_H = m_reach.bottom(first); }
+
+  void gradients_to(Index last) {
+    while (m_gradients < last) {
+      const Index end = std::min(m_gradients + Reach::chunk, m_bonds.particles());
+      const Index top = m_reach.top(end);
+      if (top > m_opened_H) {
+        open_records<Dim>(m_H, m_opened_H, top, m_u);
+        if (viscous()) open_records<Dim>(m_rate, m_opened_H, top, m_v);
+        m_opened_H = top;
+      }
+      const double* inverse_V = m_model.m_inverse_V.data();
+      gradient_rows<Dim>(m_bonds, m_gradients, end, inverse_V, m_H);
+      if (viscous()) gradient_rows<Dim>(m_bonds, m_gradients, end, inverse_V, m_rate);
+      m_gradients = end;
+    }
+  }
+
+  void stresses_to(Index last) {
+    while (m_stresses < last) {
+      const Index end = std::min(m_stresses + Reach::chunk, m_bonds.particles());
+      const Index top = m_reach.top(end);
+      if (contact()) {
+        gradients_to(top);
+        if (top > m_opened_P) open_records<Dim>(m_P, m_opened_P, top);
+        m_opened_P = std::max(m_opened_P, top);
+        contact_rows<Dim>(m_bonds, m_stresses, end, m_model.m_factors, m_model.m_body.X.data(),
+                          m_H, m_P, m_buffer);
+      } else {
+        gradients_to(end);
+      }
+      // Only the part's own particles keep a plastic trial state.
+      const Index own = std::clamp(m_part.first, m_stresses, end),
+                  beyond = std::clamp(m_part.last, own, end);
+      stress(m_stresses, own, false);
+      stress(own, beyond, true);
+      stress(beyond, end, false);
+      if (viscous()) add_viscous_stress(m_stresses, end);
+      m_stresses = end;
+    }
+  }
+
+  void stress(Index first, Index last, bool keep) {
+    if (first == last) return;
+    StressConstants c = m_model.m_constitution.kernel().constants;
+    c.keep_trial = keep;
+    const double* inverse_V = m_model.m_inverse_V.data();
+    const Index bad = with_law(m_model.m_constitution.kernel().law, [&](auto law) {
+      return contact() ? stress_rows<Dim, decltype(law)::value, true>(c, first, last, inverse_V,
+                                                                      m_H, m_P)
+                       : stress_rows<Dim, decltype(law)::value, false>(c, first, last,
+                                                                       inverse_V, m_H, m_P);
+    });
+    if (m_bad < 0) m_bad = bad;
+  }
+
+  /// P += J sigma_visc F^-T (62) with rho J = rho0: (linear + quadratic |tr d|) d cof F / J, d
+  /// = sym(dF/dt F^-1) (35), (36).
+  void add_viscous_stress(Index first, Index last) {
+    const Viscosity& viscosity = *m_model.m_viscosity;
+    for (Index a = first; a < last; ++a) {
+      const Mat3 inverse = (Mat3::Identity() + tensor_of<Dim>(m_H.at(a))).inverse();
+      const Mat3 l = tensor_of<Dim>(m_rate.at(a)) * inverse;
+      const Mat3 d = 0.5 * (l + l.transpose());
+      const Mat3 P = (viscosity.linear + viscosity.quadratic * std::abs(d.trace())) * d *
+                     inverse.transpose();
+      for (int j = 0; j < Dim; ++j) {
+        for (int i = 0; i < Dim; ++i) m_P.at(a)[j * Lanes<Dim>::stride + i] += P(i, j);
+      }
+    }
+  }
+
+  DelaunayModel& m_model;
+  const Reach& m_reach;
+  const Bonds& m_bonds;
+  const double *m_u, *m_v;
+  Window<Dim> m_H, m_P, m_rate;
+  ContactBuffer& m_buffer;
+  ParticleRange m_part{0, 0};
+  Index m_gradients = 0, m_stresses = 0;  ///< rows done
+  Index m_opened_H = 0, m_opened_P = 0;   ///< records that have been opened
+  Index m_bad = -1;
+};
+
+DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
+                             const Parameters& parameters, const Executor& executor)
+    : ForceModel(body, problem), m_contact(parameters.xi_n > 0 || parameters.xi_t > 0),
+      m_factors{parameters.xi_n * problem.material.E, parameters.xi_t * problem.material.mu},
+      m_bonds(make_bonds(body, m_contact, executor)), m_reach(m_bonds) {
   m_inverse_V.resize(body.n);
   for (Index a = 0; a < body.n; ++a) m_inverse_V[a] = 1 / body.V[a];
-  m_H.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
-  m_P.assign(m_H.size(), 0.0);
-  m_bad.assign(m_bonds.blocks.size(), -1);
   if (parameters.c1 > 0 || parameters.c2 > 0) {
     const double rho0 = problem.material.rho0,
                  h = body.h_min;  // Eq. (61): h is the shortest branch vector
     m_viscosity =
         Viscosity{rho0 * parameters.c1 * problem.material.longitudinal_wave_speed() * h,
                   rho0 * parameters.c2 * h * h};
-    m_rate.assign(m_H.size(), 0.0);
   }
+  make_spaces(executor.threads());
 }
 
-/// P += J sigma_visc F^-T (62) with rho J = rho0: (linear + quadratic |tr d|) d cof F / J, d =
-/// sym(dF/dt F^-1) (35), (36).
-template <int Dim>
-void DelaunayModel::add_viscous_stress(const BondBlock& block, const double* v) {
-  volume_gradients<Dim>(block, v, m_rate.data());
-  for (Index a = block.first; a < block.last; ++a) {
-    const Mat3 F = Mat3::Identity() + tensor_at(m_H, Dim, a);
-    const Mat3 inverse = F.inverse();
-    const Mat3 l = tensor_at(m_rate, Dim, a) * m_inverse_V[a] * inverse;
-    const Mat3 d = 0.5 * (l + l.transpose());
-    const Mat3 P = (m_viscosity->linear + m_viscosity->quadratic * std::abs(d.trace())) * d *
-                   inverse.transpose();
-    for (int j = 0; j < Dim; ++j) {
-      for (int i = 0; i < Dim; ++i)
-        m_P[(static_cast<std::size_t>(a) * Dim + j) * Lanes<Dim>::stride + i] += P(i, j);
-    }
-  }
+DelaunayModel::~DelaunayModel() = default;
+
+void DelaunayModel::make_spaces(int workers) {
+  while (m_spaces.size() < static_cast<std::size_t>(workers))
+    m_spaces.push_back(std::make_unique<Space>(m_bonds, m_reach, m_body.dim, m_contact,
+                                               m_viscosity.has_value()));
 }
 
 template <int Dim>
-void DelaunayModel::forces_in(const double* u, const double* v, double* f,
+void DelaunayModel::forces_in(std::span<const ParticleRange> parts, const double* u,
+                              const double* v, double* f, const Executor& executor) {
+  const int workers = executor.threads();
+  make_spaces(workers);
+  std::atomic<Index> first_bad{m_body.n};
+  const auto sweep = [&](Space& space, ParticleRange part) {
+    const Index bad = Sweep<Dim>(*this, space, u, v).forces(part, f);
+    Index known = first_bad.load();
+    while (bad >= 0 && bad < known && !first_bad.compare_exchange_weak(known, bad)) continue;
+  };
+  if (workers == 1) {
+    for (const ParticleRange& part : parts) sweep(*m_spaces[0], part);
+  } else {
+    const auto dealt = deal(parts, workers);
+    executor.for_each(dealt.size(), [&](std::size_t w) {
+      for (const ParticleRange& part : dealt[w]) sweep(*m_spaces[w], part);
+    });
+  }
+  if (first_bad < m_body.n) throw BadState{"det F", first_bad};
+}
+
+void DelaunayModel::forces_of(std::span<const ParticleRange> parts, std::span<const double> u,
+                              std::span<const double> v, std::span<double> f,
                               const Executor& executor) {
-  const std::size_t count = m_bonds.blocks.size();
-  executor.for_each(count, [&](std::size_t k) {
-    const BondBlock& block = m_bonds.blocks[k];
-    m_bad[k] = with_law(m_constitution.kernel().law, [&](auto law) {
-      return gradients_and_stress<Dim, decltype(law)::value>(
-          block, m_constitution.kernel().constants, m_inverse_V.data(), u, m_H.data(),
-          m_P.data(), f);
-    });
-    if (features::viscosity && m_viscosity) add_viscous_stress<Dim>(block, v);
-  });
-  for (const Index bad : m_bad) {
-    if (bad >= 0) throw BadState{"det F", bad};
-  }
-  if (features::contact && m_contact) {
-    const ContactColumns columns{m_body.X.data(),    u,          m_H.data(),
-                                 m_inverse_V.data(), m_P.data(), f};
-    const ContactFactors factors{m_normal_factor, m_tangential_factor};
-    executor.for_each(count, [&](std::size_t k) {
-      if (m_normal_factor == m_tangential_factor)
-        contact<Dim, true>(m_bonds.blocks[k], factors, columns);
-      else
-        contact<Dim, false>(m_bonds.blocks[k], factors, columns);
-    });
-  }
-  executor.for_each(
-      count, [&](std::size_t k) { internal_force<Dim>(m_bonds.blocks[k], m_P.data(), f); });
+  if (m_body.dim == 3)
+    forces_in<3>(parts, u.data(), v.data(), f.data(), executor);
+  else
+    forces_in<2>(parts, u.data(), v.data(), f.data(), executor);
 }
 
 void DelaunayModel::forces(std::span<const double> u, std::span<const double> v,
                            std::span<double> f, const Executor& executor) {
-  if (m_body.dim == 3)
-    forces_in<3>(u.data(), v.data(), f.data(), executor);
-  else
-    forces_in<2>(u.data(), v.data(), f.data(), executor);
+  const ParticleRange all{0, m_body.n};
+  forces_of({&all, 1}, u, v, f, executor);
+}
+
+ParticleRange DelaunayModel::reach(ParticleRange part) const {
+  const auto ring = [&](ParticleRange r) {
+    return ParticleRange{m_reach.bottom(r.first), m_reach.top(r.last)};
+  };
+  // f_a needs P_b of its neighbours, contact in it H_c of theirs, and H_c needs u_d of these'.
+  return m_contact ? ring(ring(ring(part))) : ring(ring(part));
 }
 
 double DelaunayModel::viscous_damping_ratio(double omega_max) const {
@@ -104,95 +232,118 @@ double DelaunayModel::viscous_damping_ratio(double omega_max) const {
   return 0.5 * m_viscosity->linear * omega_max / (lame.lambda + 2 * lame.mu);
 }
 
-void DelaunayModel::compute_gradients(std::span<const double> u, const Executor& executor) {
-  executor.for_each(m_bonds.blocks.size(), [&](std::size_t k) {
-    const BondBlock& block = m_bonds.blocks[k];
-    if (m_body.dim == 3)
-      volume_gradients<3>(block, u.data(), m_H.data());
-    else
-      volume_gradients<2>(block, u.data(), m_H.data());
-    const std::size_t size = static_cast<std::size_t>(m_body.dim) * m_body.stride;
-    for (Index a = block.first; a < block.last; ++a) {
-      for (std::size_t i = 0; i < size; ++i) m_H[a * size + i] *= m_inverse_V[a];
-    }
+/// use(first, last, H) for chunks of rows, on all threads; chunks start at multiples of
+/// Reach::chunk.
+template <int Dim, class Use>
+void DelaunayModel::visit_gradients(const double* u, const Executor& executor, const Use& use) {
+  make_spaces(executor.threads());
+  const ParticleRange all{0, m_body.n};
+  const auto dealt = deal({&all, 1}, executor.threads());
+  executor.for_each(dealt.size(), [&](std::size_t w) {
+    for (const ParticleRange& part : dealt[w])
+      Sweep<Dim>(*this, *m_spaces[w], u, u).gradients(part, use);
   });
 }
 
 void DelaunayModel::gradients(std::span<const double> u, std::span<Mat3> H) {
-  compute_gradients(u, Executor(1));
-  for (Index a = 0; a < m_body.n; ++a)
-    H[a] = m_constitution.complete(tensor_at(m_H, m_body.dim, a));
+  const auto visit = [&]<int Dim>() {
+    visit_gradients<Dim>(u.data(), Executor(1),
+                         [&](Index first, Index last, Window<Dim> window) {
+                           for (Index a = first; a < last; ++a)
+                             H[a] = m_constitution.complete(tensor_of<Dim>(window.at(a)));
+                         });
+  };
+  m_body.dim == 3 ? visit.template operator()<3>() : visit.template operator()<2>();
+}
+
+/// Contact energies (56) of the bonds in row a.
+template <int Dim>
+double DelaunayModel::contact_energies(const Tensor<Dim>& H_a, const double* u, Window<Dim> H,
+                                       Index a) const {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  const Vec<Dim> u_a = load<Vec<Dim>>(u + a * S), X_a = load<Vec<Dim>>(&m_body.X[a * S]);
+  double energy = 0;
+  for (Index k = m_bonds.begin[a]; k < m_bonds.begin[a + 1]; ++k) {
+    const std::size_t b = m_bonds.other[k];
+    const Vec<Dim> u_ab = load<Vec<Dim>>(u + b * S) - u_a,
+                   X_ab = load<Vec<Dim>>(&m_body.X[b * S]) - X_a, x_ab = X_ab + u_ab;
+    Tensor<Dim> sum = Tensor<Dim>::load(H.at(m_bonds.other[k]));
+    for (int i = 0; i < Dim; ++i) sum.column[i] += H_a.column[i];
+    const Vec<Dim> local = u_ab - sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
+    const v2d products = lane_sums(local * x_ab, x_ab * x_ab);
+    const double normal2 = products[0] * products[0] / products[1];
+    const double K_t = m_factors.tangential * m_bonds.area_over_length[k],
+                 K_n = m_factors.normal * m_bonds.area_over_length[k];
+    energy += 0.5 * K_t * lane_sum(local * local) + 0.5 * (K_n - K_t) * normal2;
+  }
+  return energy;
 }
 
 Energies DelaunayModel::energies(std::span<const double> u, const Executor& executor) {
-  compute_gradients(u, executor);
-  Energies e;
-  add_internal_energy(e, executor, [&](Index a) { return tensor_at(m_H, m_body.dim, a); });
-  if (m_contact) {
-    e.stabilisation = executor.sum(m_pairs.size(), [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t k = begin; k < end; ++k) sum += contact_energy(k, u);
-      return sum;
+  std::vector<Energies> chunks((m_body.n + Reach::chunk - 1) / Reach::chunk);
+  const auto visit = [&]<int Dim>() {
+    visit_gradients<Dim>(u.data(), executor, [&](Index first, Index last, Window<Dim> H) {
+      Energies& e = chunks[first / Reach::chunk];
+      for (Index a = first; a < last; ++a) {
+        const Constitution::PointEnergy point =
+            m_constitution.energy(a, tensor_of<Dim>(H.at(a)));
+        e.internal += m_body.V[a] * point.stored;
+        e.plastic += m_body.V[a] * point.plastic;
+        if (m_contact)
+          e.stabilisation += contact_energies<Dim>(Tensor<Dim>::load(H.at(a)), u.data(), H, a);
+      }
     });
+  };
+  m_body.dim == 3 ? visit.template operator()<3>() : visit.template operator()<2>();
+  Energies total;
+  for (const Energies& e : chunks) {
+    total.internal += e.internal;
+    total.plastic += e.plastic;
+    total.stabilisation += e.stabilisation;
   }
-  return e;
-}
-
-DelaunayModel::Local DelaunayModel::local_displacement(std::size_t pair,
-                                                       std::span<const double> u) const {
-  const Bond& bond = m_pairs[pair];
-  Local s;
-  s.X_ab = m_body.position(bond.b) - m_body.position(bond.a);
-  Vec3 u_ab = Vec3::Zero();
-  for (int i = 0; i < m_body.dim; ++i) {
-    u_ab[i] = u[static_cast<std::size_t>(bond.b) * m_body.stride + i] -
-              u[static_cast<std::size_t>(bond.a) * m_body.stride + i];
-  }
-  s.x_ab = s.X_ab + u_ab;
-  s.u_loc =
-      u_ab -
-      0.5 * (tensor_at(m_H, m_body.dim, bond.a) + tensor_at(m_H, m_body.dim, bond.b)) * s.X_ab;
-  s.K_n = m_normal_factor * m_stiffness[pair];
-  s.K_t = m_tangential_factor * m_stiffness[pair];
-  return s;
-}
-
-double DelaunayModel::contact_energy(std::size_t pair, std::span<const double> u) const {
-  const Local s = local_displacement(pair, u);
-  const double along = s.u_loc.dot(s.x_ab), normal2 = along * along / s.x_ab.squaredNorm();
-  return 0.5 * s.K_t * s.u_loc.squaredNorm() + 0.5 * (s.K_n - s.K_t) * normal2;  // (56)
+  return total;
 }
 
 /// Derivatives of (57), (58): with r = u_loc, c = K_n - K_t, s = r.x/|x|^2, w = r - s x,
 /// q = K_t r + c s x and p = q + c s w.
-PairTangent DelaunayModel::contact_tangent(std::size_t pair, std::span<const double> u) const {
-  const Local l = local_displacement(pair, u);
-  const Vec3 &x = l.x_ab, &r = l.u_loc;
-  const double c = l.K_n - l.K_t, x2 = x.squaredNorm(), s = r.dot(x) / x2;
+PairTangent DelaunayModel::contact_tangent(Index a, Index k, std::span<const double> u,
+                                           std::span<const Mat3> H) const {
+  PairTangent t;
+  t.a = a;
+  t.b = m_bonds.other[k];
+  t.X_ab = m_body.position(t.b) - m_body.position(t.a);
+  Vec3 u_ab = Vec3::Zero();
+  for (int i = 0; i < m_body.dim; ++i) {
+    u_ab[i] = u[static_cast<std::size_t>(t.b) * m_body.stride + i] -
+              u[static_cast<std::size_t>(t.a) * m_body.stride + i];
+  }
+  const Vec3 x = t.X_ab + u_ab, r = u_ab - 0.5 * (H[t.a] + H[t.b]) * t.X_ab;
+  const double K_t = m_factors.tangential * m_bonds.area_over_length[k],
+               c = m_factors.normal * m_bonds.area_over_length[k] - K_t;
+  const double x2 = x.squaredNorm(), s = r.dot(x) / x2;
   const Vec3 w = r - s * x;
   const Vec3 s_y = -x / x2, s_x = (x + r - 2 * s * x) / x2;
   const Mat3 I = Mat3::Identity();
-  PairTangent t;
-  t.a = m_pairs[pair].a;
-  t.b = m_pairs[pair].b;
-  t.X_ab = l.X_ab;
-  t.q_y = -l.K_t * I + c * x * s_y.transpose();
-  t.q_x = (l.K_t + c * s) * I + c * x * s_x.transpose();
+  t.q_y = -K_t * I + c * x * s_y.transpose();
+  t.q_x = (K_t + c * s) * I + c * x * s_x.transpose();
   t.p_y = t.q_y + c * (w * s_y.transpose() - s * I - s * x * s_y.transpose());
   t.p_x = t.q_x + c * (w * s_x.transpose() + (s - s * s) * I - s * x * s_x.transpose());
   return t;
 }
 
 const ForceModel::Stiffness& DelaunayModel::tangent(std::span<const double> u) {
-  compute_gradients(u, Executor(1));
-  if (!m_tangent) m_tangent.emplace(m_body, directed_rows(m_body, m_pairs));
+  if (!m_tangent) m_tangent.emplace(m_body, directed_rows(m_body, m_bonds));
+  std::vector<Mat3> H(m_body.n);
+  gradients(u, H);
   std::vector<Moduli> moduli(m_body.n);
-  for (Index a = 0; a < m_body.n; ++a)
-    moduli[a] = m_constitution.tangent(a, tensor_at(m_H, m_body.dim, a));
+  for (Index a = 0; a < m_body.n; ++a) moduli[a] = m_constitution.tangent(a, H[a]);
   std::vector<PairTangent> pairs;
   if (m_contact) {
-    pairs.reserve(m_pairs.size());
-    for (std::size_t k = 0; k < m_pairs.size(); ++k) pairs.push_back(contact_tangent(k, u));
+    pairs.reserve(m_bonds.count());
+    for (Index a = 0; a < m_body.n; ++a) {
+      for (Index k = m_bonds.begin[a]; k < m_bonds.begin[a + 1]; ++k)
+        pairs.push_back(contact_tangent(a, k, u, H));
+    }
   }
   return m_tangent->assemble(moduli, pairs);
 }

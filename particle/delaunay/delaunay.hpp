@@ -5,8 +5,10 @@
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
 #include "particle/core/tangent.hpp"
-#include "particle/delaunay/bonds.hpp"
+#include "particle/delaunay/kernels.hpp"
+#include "particle/delaunay/sweep.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace concord::particle::delaunay {
@@ -19,53 +21,60 @@ struct Parameters {
   double c2 = 0;    ///< quadratic artificial viscosity
 };
 
+/// Coefficients of the viscous stress (62), times rho0.
+struct Viscosity {
+  double linear;     ///< rho0 c1 c_p h [Pa s]
+  double quadratic;  ///< rho0 c2 h^2 [Pa s^2]
+};
+
 /// Forces (46), (50) of the Delaunay method in the pair form of its README, on state u
-/// (displacement).
+/// (displacement). The force on a particle is the same to the bit whatever parts, threads or
+/// windows it is computed with.
 class DelaunayModel final : public ForceModel {
  public:
-  DelaunayModel(const Body& body, const scene::Problem& problem, const Parameters& parameters);
+  DelaunayModel(const Body& body, const scene::Problem& problem, const Parameters& parameters,
+                const Executor& executor = Executor(1));
+  ~DelaunayModel() override;
 
   void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
               const Executor& executor) override;
+  bool has_parts() const override { return true; }
+  void forces_of(std::span<const ParticleRange> parts, std::span<const double> u,
+                 std::span<const double> v, std::span<double> f,
+                 const Executor& executor) override;
+  ParticleRange reach(ParticleRange part) const override;
   Energies energies(std::span<const double> u, const Executor& executor) override;
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   const Stiffness& tangent(std::span<const double> u) override;
   bool viscous() const override { return m_viscosity.has_value(); }
   double viscous_damping_ratio(double omega_max) const override;
-  std::size_t interactions() const override { return m_bonds.count; }
+  std::size_t interactions() const override { return m_bonds.count(); }
 
   const Bonds& bonds() const { return m_bonds; }
 
  private:
-  struct Viscosity {
-    double linear;     ///< rho0 c1 c_p h [Pa s]
-    double quadratic;  ///< rho0 c2 h^2 [Pa s^2]
-  };
+  class Space;
+  template <int Dim> class Sweep;
   template <int Dim>
-  void forces_in(const double* u, const double* v, double* f, const Executor& executor);
-  template <int Dim> void add_viscous_stress(const BondBlock& block, const double* v);
-  void compute_gradients(std::span<const double> u, const Executor& executor);
+  void forces_in(std::span<const ParticleRange> parts, const double* u, const double* v,
+                 double* f, const Executor& executor);
+  template <int Dim>
+  double contact_energies(const Tensor<Dim>& H_a, const double* u, Window<Dim> H,
+                          Index a) const;
+  template <int Dim, class Use>
+  void visit_gradients(const double* u, const Executor& executor, const Use& use);
+  PairTangent contact_tangent(Index a, Index k, std::span<const double> u,
+                              std::span<const Mat3> H) const;
+  void make_spaces(int workers);
 
-  /// A pair as the contact law sees it, from m_H.
-  struct Local {
-    Vec3 X_ab, x_ab, u_loc;
-    double K_n, K_t;
-  };
-  Local local_displacement(std::size_t pair, std::span<const double> u) const;
-  double contact_energy(std::size_t pair, std::span<const double> u) const;
-  PairTangent contact_tangent(std::size_t pair, std::span<const double> u) const;
-
-  std::vector<Bond> m_pairs;        ///< unblocked, for energies and tangent
-  std::vector<double> m_stiffness;  ///< A_ab / L_ab of each pair [m]; empty without contact
-  double m_normal_factor = 0;       ///< xi_n E
-  double m_tangential_factor = 0;   ///< xi_t G
   bool m_contact = false;
+  ContactFactors m_factors{0, 0};
   Bonds m_bonds;
-  std::optional<TangentAssembly> m_tangent;  ///< made when the first tangent is asked for
-  std::optional<Viscosity> m_viscosity;
+  Reach m_reach;
   std::vector<double> m_inverse_V;
-  Column m_H, m_P, m_rate;
-  std::vector<Index> m_bad;  ///< per block
+  std::optional<Viscosity> m_viscosity;
+  std::vector<std::unique_ptr<Space>> m_spaces;  ///< one a worker
+  std::optional<TangentAssembly> m_tangent;      ///< made when the first tangent is asked for
 };
 
 }  // namespace concord::particle::delaunay

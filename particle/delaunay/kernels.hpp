@@ -1,12 +1,31 @@
 #pragma once
-// The loops of one force evaluation of the Delaunay method, a block of particles at a time.
-// Each reads like the paper; numbers in parentheses are its equations. Columns: Dim vectors a
-// particle for tensors.
+// The loops of one force evaluation of the Delaunay method, over a few rows of bonds at a time.
+// Each reads like the paper; numbers in parentheses are its equations. Each bond is visited
+// once, in the row of its lower-numbered particle a, and adds to both ends; what is added to
+// one particle comes in ascending order of its neighbours, whoever works on which rows.
 
 #include "particle/core/stress_kernel.hpp"
 #include "particle/delaunay/bonds.hpp"
 
+#include <cstring>
+
 namespace concord::particle::delaunay {
+
+/// Doubles in a record of a window: a tensor, column by column, and a vector; whole cache
+/// lines.
+template <int Dim> inline constexpr std::size_t record_size = Dim == 3 ? 16 : 8;
+/// Where the vector is.
+template <int Dim> inline constexpr std::size_t vector_at = Dim* Lanes<Dim>::stride;
+
+/// Records of consecutive particles in a ring: particle a is at a modulo the ring's size, a
+/// power of two.
+template <int Dim> struct Window {
+  double* records;
+  std::size_t mask;  ///< size - 1
+  CONCORD_INLINE double* at(Index a) const {
+    return records + (static_cast<std::size_t>(a) & mask) * record_size<Dim>;
+  }
+};
 
 /// Tensor of one particle in registers, column by column.
 template <int Dim> struct Tensor {
@@ -25,12 +44,6 @@ template <int Dim> struct Tensor {
   CONCORD_INLINE void add_outer(Vec<Dim> d, const double* B) {
     for (int k = 0; k < Dim; ++k) column[k] += d * broadcast(B[k], Vec<Dim>{});
   }
-  /// this += d (x) X, X in a register
-  CONCORD_INLINE void add_outer(Vec<Dim> d, Vec<Dim> X) {
-    column[0] += d * lane<0>(X);
-    column[1] += d * lane<1>(X);
-    if constexpr (Dim == 3) column[2] += d * lane<2>(X);
-  }
   /// this X, X in a register
   CONCORD_INLINE Vec<Dim> times(Vec<Dim> X) const {
     Vec<Dim> r = column[0] * lane<0>(X) + column[1] * lane<1>(X);
@@ -45,87 +58,85 @@ template <int Dim> struct Tensor {
   }
 };
 
-template <int Dim> inline constexpr std::size_t vector_size = Lanes<Dim>::stride;
-template <int Dim> inline constexpr std::size_t tensor_size = Dim* Lanes<Dim>::stride;
-
-/// Row r of V_a H_a = sum_b u_ab (x) B_ab (32); inner bonds add to both ends: u_ba (x) B_ba =
-/// u_ab (x) B_ab off the surface.
-template <int Dim, bool Surface>
-CONCORD_INLINE void gradient_row(const BondRows& rows, Index first, Index r, const double* u,
-                                 double* H) {
-  const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
-  if (begin == end) return;
-  const Index a = first + r;
-  const Vec<Dim> u_a = load<Vec<Dim>>(u + a * vector_size<Dim>);
-  Tensor<Dim> H_a = Tensor<Dim>::load(H + a * tensor_size<Dim>);
-  for (Index k = begin; k < cut; ++k) {
-    const Index b = rows.other[k];
-    const double* B = &rows.B[static_cast<std::size_t>(k) * bond_record];
-    const Vec<Dim> u_ab = load<Vec<Dim>>(u + b * vector_size<Dim>) - u_a;
-    H_a.add_outer(u_ab, B);
-    Tensor<Dim> H_b = Tensor<Dim>::load(H + b * tensor_size<Dim>);
-    if constexpr (Surface) {
-      H_b.add_outer(-u_ab, &rows.B_reverse[static_cast<std::size_t>(k) * bond_record]);
-    } else {
-      H_b.add_outer(u_ab, B);
-    }
-    H_b.store(H + b * tensor_size<Dim>);
-  }
-  for (Index k = cut; k < end; ++k) {
-    const Vec<Dim> u_ab = load<Vec<Dim>>(u + rows.other[k] * vector_size<Dim>) - u_a;
-    H_a.add_outer(u_ab, &rows.B[static_cast<std::size_t>(k) * bond_record]);
-  }
-  H_a.store(H + a * tensor_size<Dim>);
-}
-
-/// V_a H_a of a block; with u replaced by v, V_a dF_a/dt (34).
+/// Adds d (x) B to the tensor of a record.
 template <int Dim>
-CONCORD_CLONES void volume_gradients(const BondBlock& block, const double* u, double* H) {
-  const Index rows = block.last - block.first;
-  std::fill(H + block.first * tensor_size<Dim>, H + block.last * tensor_size<Dim>, 0.0);
-  for (Index r = 0; r < rows; ++r) gradient_row<Dim, true>(block.surface, block.first, r, u, H);
-  for (Index r = 0; r < rows; ++r)
-    gradient_row<Dim, false>(block.regular, block.first, r, u, H);
+CONCORD_INLINE void scatter_outer(double* record, Vec<Dim> d, const double* B) {
+  Tensor<Dim> t = Tensor<Dim>::load(record);
+  t.add_outer(d, B);
+  t.store(record);
 }
 
-/// H_a and P_a (53) of a block, and f_a = 0. The stress follows as soon as a group of rows is
-/// complete, while H is in cache. Returns the first particle with det F <= 0 or NaN, or -1.
-template <int Dim, StressLaw Law>
-CONCORD_CLONES Index gradients_and_stress(const BondBlock& block, const StressConstants& c,
-                                          const double* inverse_V, const double* u, double* H,
-                                          double* P, double* f) {
-  const Index rows = block.last - block.first;
-  std::fill(H + block.first * tensor_size<Dim>, H + block.last * tensor_size<Dim>, 0.0);
-  std::fill(f + block.first * vector_size<Dim>, f + block.last * vector_size<Dim>, 0.0);
-  for (Index r = 0; r < rows; ++r) gradient_row<Dim, true>(block.surface, block.first, r, u, H);
-  Index bad_particle = -1;
-  for (Index r = 0; r < rows; r += stress_width) {
-    const Index count = std::min<Index>(stress_width, rows - r);
-    for (Index i = 0; i < count; ++i)
-      gradient_row<Dim, false>(block.regular, block.first, r + i, u, H);
-    const Index a = block.first + r;
-    const unsigned bad = stress_of_group<Dim, Law>(
-        c, a, count, inverse_V + a, H + a * tensor_size<Dim>, P + a * tensor_size<Dim>);
-    if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
+/// Row of corrections of the boundary particle that comes next in a sweep.
+struct SurfaceCursor {
+  const SurfaceBonds& bonds;
+  std::size_t row;
+  SurfaceCursor(const SurfaceBonds& surface, Index first)
+      : bonds(surface),
+        row(static_cast<std::size_t>(
+            std::lower_bound(surface.particle.begin(), surface.particle.end(), first) -
+            surface.particle.begin())) {}
+};
+
+/// Records of [first, last) get a zero tensor and the vectors of a column.
+template <int Dim>
+CONCORD_CLONES void open_records(Window<Dim> window, Index first, Index last,
+                                 const double* column) {
+  for (Index a = first; a < last; ++a) {
+    double* record = window.at(a);
+    for (int k = 0; k < Dim; ++k) store(record + k * Lanes<Dim>::stride, Vec<Dim>{});
+    store(record + vector_at<Dim>,
+          load<Vec<Dim>>(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride));
   }
-  return bad_particle;
 }
 
-/// One bond of the contact law (56)-(60): u_loc = u_ab - (H_a + H_b) X_ab / 2 (7), with x_ab =
-/// X_ab + u_ab. Isotropic: K_n = K_t (59).
-template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_law(Vec<Dim> u_ab, Vec<Dim> X_ab, const Tensor<Dim>& H_sum,
-                                double K_n, double K_t, Vec<Dim>& p, Vec<Dim>& q) {
-  const Vec<Dim> local = u_ab - H_sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
-  if constexpr (Isotropic) {
-    p = q = local * broadcast(K_n, Vec<Dim>{});
-  } else {
-    const Vec<Dim> x_ab = X_ab + u_ab;
-    const double s = lane_sum(local * x_ab) / lane_sum(x_ab * x_ab);
-    const Vec<Dim> normal = x_ab * broadcast(s, Vec<Dim>{});
-    const Vec<Dim> tangential = local - normal;
-    q = normal * broadcast(K_n, Vec<Dim>{}) + tangential * broadcast(K_t, Vec<Dim>{});  // (58)
-    p = q + tangential * broadcast((K_n - K_t) * s, Vec<Dim>{});                        // (57)
+/// Records of [first, last) get a zero tensor and a zero vector.
+template <int Dim>
+CONCORD_CLONES void open_records(Window<Dim> window, Index first, Index last) {
+  for (Index a = first; a < last; ++a) {
+    double* record = window.at(a);
+    for (int k = 0; k <= Dim; ++k) store(record + k * Lanes<Dim>::stride, Vec<Dim>{});
+  }
+}
+
+/// Corrections to V_a H_a of a boundary particle: u_ab (x) (B_ab + B_ba)/2, and at b the same
+/// with the other sign.
+template <int Dim>
+CONCORD_INLINE void gradient_correction(const SurfaceBonds& s, std::size_t row, Vec<Dim> u_a,
+                                        Tensor<Dim>& H_a, Window<Dim> H) {
+  for (Index k = s.begin[row]; k < s.begin[row + 1]; ++k) {
+    double* H_b = H.at(s.other[k]);
+    const double* B = &s.B_symmetric[static_cast<std::size_t>(k) * Dim];
+    const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+    H_a.add_outer(u_ab, B);
+    scatter_outer<Dim>(H_b, -u_ab, B);
+  }
+}
+
+/// V_a H_a = sum_b u_ab (x) B_ab (32); off the surface u_ba (x) B_ba = u_ab (x) B_ab. H holds u
+/// in its vectors; the rows' own particles are complete after it and get H_a = F_a - I. With v
+/// in place of u: dF_a/dt (34).
+template <int Dim>
+CONCORD_CLONES void gradient_rows(const Bonds& bonds, Index first, Index last,
+                                  const double* inverse_V, Window<Dim> H) {
+  SurfaceCursor surface(bonds.surface, first);
+  const Index* begin = bonds.begin.data();
+  const Index* other = bonds.other.data();
+  const double* B_all = bonds.B.data();
+  for (Index a = first; a < last; ++a) {
+    double* record = H.at(a);
+    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Tensor<Dim> H_a = Tensor<Dim>::load(record);
+    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+      double* H_b = H.at(other[k]);
+      const double* B = B_all + static_cast<std::size_t>(k) * Dim;
+      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+      H_a.add_outer(u_ab, B);
+      scatter_outer<Dim>(H_b, u_ab, B);
+    }
+    if (a == surface.bonds.particle[surface.row])
+      gradient_correction<Dim>(surface.bonds, surface.row++, u_a, H_a, H);
+    for (auto& column : H_a.column) column *= broadcast(inverse_V[a], Vec<Dim>{});
+    H_a.store(record);
   }
 }
 
@@ -134,91 +145,243 @@ struct ContactFactors {
   double normal, tangential;
 };
 
-/// State that the contact pass reads and writes.
-struct ContactColumns {
-  const double *X, *u, *H, *inverse_V;
-  double *P, *f;
+/// Bonds of a group of rows between the two halves of the contact law.
+struct ContactBuffer {
+  Column local, x, X;  ///< u_loc, x_ab, X_ab: a vector a bond
+  Column products;     ///< u_loc.x_ab and |x_ab|^2
+  Column K, share, s;  ///< K_t, (K_n - K_t) s, s = u_loc.x_ab / |x_ab|^2
+
+  ContactBuffer(const Bonds& bonds, int dim, bool contact) {
+    if (!contact) return;
+    Index most = 0;
+    const Index n = bonds.particles();
+    for (Index a = 0; a < n; ++a)
+      most = std::max(most, bonds.begin[std::min(n, a + stress_width)] - bonds.begin[a]);
+    const std::size_t size = static_cast<std::size_t>(most) + bond_padding;
+    local.assign(size * stride_of(dim), 0.0);
+    x = X = local;
+    products.assign(2 * size, 1.0);
+    K.assign(size, 0.0);
+    share = s = K;
+  }
 };
 
-/// f_a += p_ab and P_a += Q_a / V_a with Q_a = -1/2 sum_b q_ab (x) X_ab (the adjoint of the
-/// second-neighbour sum in (50)).
-template <int Dim, bool Isotropic>
-CONCORD_INLINE void contact_row(const BondRows& rows, Index first, Index r,
-                                const ContactFactors& factors, const ContactColumns& s) {
-  const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
-  if (begin == end) return;
-  const Index a = first + r;
-  const Vec<Dim> u_a = load<Vec<Dim>>(s.u + a * vector_size<Dim>),
-                 X_a = load<Vec<Dim>>(s.X + a * vector_size<Dim>);
-  const Tensor<Dim> H_a = Tensor<Dim>::load(s.H + a * tensor_size<Dim>);
-  Tensor<Dim> P_a = Tensor<Dim>::load(s.P + a * tensor_size<Dim>);
-  Vec<Dim> f_a = load<Vec<Dim>>(s.f + a * vector_size<Dim>);
-  const double w_a = 0.5 * s.inverse_V[a];
-  for (Index k = begin; k < end; ++k) {
-    const Index b = rows.other[k];
-    const double area_over_length = rows.B[static_cast<std::size_t>(k) * bond_record + Dim];
-    const Vec<Dim> u_ab = load<Vec<Dim>>(s.u + b * vector_size<Dim>) - u_a;
-    const Vec<Dim> X_ab = load<Vec<Dim>>(s.X + b * vector_size<Dim>) - X_a;
-    Tensor<Dim> H_sum = Tensor<Dim>::load(s.H + b * tensor_size<Dim>);
-    for (int i = 0; i < Dim; ++i) H_sum.column[i] += H_a.column[i];
-    Vec<Dim> p, q;
-    contact_law<Dim, Isotropic>(u_ab, X_ab, H_sum, factors.normal * area_over_length,
-                                factors.tangential * area_over_length, p, q);
-    f_a += p;
-    P_a.add_outer(q * broadcast(-w_a, Vec<Dim>{}), X_ab);
-    if (k >= cut) continue;
-    store(s.f + b * vector_size<Dim>, load<Vec<Dim>>(s.f + b * vector_size<Dim>) - p);
-    Tensor<Dim> P_b = Tensor<Dim>::load(s.P + b * tensor_size<Dim>);
-    P_b.add_outer(q * broadcast(-0.5 * s.inverse_V[b], Vec<Dim>{}), X_ab);
-    P_b.store(s.P + b * tensor_size<Dim>);
-  }
-  P_a.store(s.P + a * tensor_size<Dim>);
-  store(s.f + a * vector_size<Dim>, f_a);
-}
-
-template <int Dim, bool Isotropic>
-CONCORD_CLONES void contact(const BondBlock& block, const ContactFactors& factors,
-                            const ContactColumns& s) {
-  const Index rows = block.last - block.first;
-  for (Index r = 0; r < rows; ++r)
-    contact_row<Dim, Isotropic>(block.surface, block.first, r, factors, s);
-  for (Index r = 0; r < rows; ++r)
-    contact_row<Dim, Isotropic>(block.regular, block.first, r, factors, s);
-}
-
-/// f_a += sum_b (P_a B_ab - P_b B_ba) (46); off the surface (P_a + P_b) B_ab.
-template <int Dim, bool Surface>
-CONCORD_INLINE void force_row(const BondRows& rows, Index first, Index r, const double* P,
-                              double* f) {
-  const Index begin = rows.begin[r], cut = rows.cut[r], end = rows.begin[r + 1];
-  if (begin == end) return;
-  const Index a = first + r;
-  const Tensor<Dim> P_a = Tensor<Dim>::load(P + a * tensor_size<Dim>);
-  Vec<Dim> f_a = load<Vec<Dim>>(f + a * vector_size<Dim>);
-  for (Index k = begin; k < end; ++k) {
-    const Index b = rows.other[k];
-    const double* B = &rows.B[static_cast<std::size_t>(k) * bond_record];
-    Tensor<Dim> P_b = Tensor<Dim>::load(P + b * tensor_size<Dim>);
-    Vec<Dim> f_ab;
-    if constexpr (Surface) {
-      f_ab =
-          P_a.times(B) - P_b.times(&rows.B_reverse[static_cast<std::size_t>(k) * bond_record]);
-    } else {
-      for (int i = 0; i < Dim; ++i) P_b.column[i] += P_a.column[i];
-      f_ab = P_b.times(B);
-    }
-    f_a += f_ab;
-    if (k < cut)
-      store(f + b * vector_size<Dim>, load<Vec<Dim>>(f + b * vector_size<Dim>) - f_ab);
-  }
-  store(f + a * vector_size<Dim>, f_a);
-}
-
+/// First half for rows [first, last): u_loc = u_ab - (H_a + H_b) X_ab / 2 (7), with x_ab = X_ab
+/// + u_ab, and its products.
 template <int Dim>
-CONCORD_CLONES void internal_force(const BondBlock& block, const double* P, double* f) {
-  const Index rows = block.last - block.first;
-  for (Index r = 0; r < rows; ++r) force_row<Dim, true>(block.surface, block.first, r, P, f);
-  for (Index r = 0; r < rows; ++r) force_row<Dim, false>(block.regular, block.first, r, P, f);
+CONCORD_INLINE void local_displacements(const Bonds& bonds, Index first, Index last,
+                                        const double* X, Window<Dim> H, ContactBuffer& buffer) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  const Index* begin = bonds.begin.data();
+  const Index* other = bonds.other.data();
+  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
+  double *local_out = buffer.local.data(), *x_out = buffer.x.data(), *X_out = buffer.X.data(),
+         *products = buffer.products.data();
+  for (Index a = first; a < last; ++a) {
+    const double* record = H.at(a);
+    const Tensor<Dim> H_a = Tensor<Dim>::load(record);
+    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_at<Dim>),
+                   X_a = load<Vec<Dim>>(X + static_cast<std::size_t>(a) * S);
+    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+      const double* H_b = H.at(other[k]);
+      const Vec<Dim> X_ab = load<Vec<Dim>>(X + static_cast<std::size_t>(other[k]) * S) - X_a;
+      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+      Tensor<Dim> sum = Tensor<Dim>::load(H_b);
+      for (int i = 0; i < Dim; ++i) sum.column[i] += H_a.column[i];
+      const Vec<Dim> local = u_ab - sum.times(X_ab) * half, x_ab = X_ab + u_ab;
+      store(local_out, local), store(x_out, x_ab), store(X_out, X_ab);
+      store(products, lane_sums(local * x_ab, x_ab * x_ab));
+      local_out += S, x_out += S, X_out += S, products += 2;
+    }
+  }
+}
+
+/// Scalars of the law for `count` bonds from bond `first` on, four at a time.
+CONCORD_INLINE void contact_scalars(const Bonds& bonds, Index first, Index count,
+                                    const ContactFactors& factors, ContactBuffer& buffer) {
+  typedef long long v4i __attribute__((vector_size(32)));
+  const double* area_over_length = bonds.area_over_length.data() + first;
+  const v4d tangential = broadcast(factors.tangential, v4d{}),
+            difference = broadcast(factors.normal - factors.tangential, v4d{});
+  for (Index k = 0; k < count; k += 4) {
+    const v4d low = load<v4d>(&buffer.products[2 * k]),
+              high = load<v4d>(&buffer.products[2 * k + 4]);
+    const v4d s = __builtin_shuffle(low, high, v4i{0, 2, 4, 6}) /
+                  __builtin_shuffle(low, high, v4i{1, 3, 5, 7});
+    v4d ratio;
+    std::memcpy(&ratio, area_over_length + k, sizeof(v4d));
+    store(&buffer.K[k], tangential * ratio);
+    store(&buffer.share[k], difference * ratio * s);
+    store(&buffer.s[k], s);
+  }
+}
+
+/// Second half: with w = u_loc - s x_ab, q = K_t u_loc + (K_n - K_t) s x_ab (58) and p = q +
+/// (K_n
+/// - K_t) s w (57). Adds p to f_a and -p to f_b, q (x) X_ab to the tensors of both: -2 Q_a, Q_a
+/// = -1/2 sum_b q_ab (x) X_ab the adjoint of the second-neighbour sum in (50).
+template <int Dim>
+CONCORD_INLINE void contact_forces(const Bonds& bonds, Index first, Index last, Window<Dim> P,
+                                   const ContactBuffer& buffer) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  const Index* begin = bonds.begin.data();
+  const Index* other = bonds.other.data();
+  const double *local_in = buffer.local.data(), *x_in = buffer.x.data(), *X = buffer.X.data();
+  const double *K = buffer.K.data(), *share = buffer.share.data(), *s = buffer.s.data();
+  for (Index a = first; a < last; ++a) {
+    double* record = P.at(a);
+    Tensor<Dim> Q_a = Tensor<Dim>::load(record);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+      double* P_b = P.at(other[k]);
+      const Vec<Dim> local = load<Vec<Dim>>(local_in), x_ab = load<Vec<Dim>>(x_in);
+      const Vec<Dim> c = broadcast(*share, Vec<Dim>{});
+      const Vec<Dim> q = local * broadcast(*K, Vec<Dim>{}) + x_ab * c;
+      const Vec<Dim> p = q + (local - x_ab * broadcast(*s, Vec<Dim>{})) * c;
+      f_a += p;
+      store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - p);
+      Q_a.add_outer(q, X);
+      scatter_outer<Dim>(P_b, q, X);
+      local_in += S, x_in += S, X += S, ++K, ++share, ++s;
+    }
+    Q_a.store(record);
+    store(record + vector_at<Dim>, f_a);
+  }
+}
+
+/// Contact of rows [first, last), a group at a time: the division and the chains of either half
+/// overlap over its bonds.
+template <int Dim>
+CONCORD_CLONES void contact_rows(const Bonds& bonds, Index first, Index last,
+                                 const ContactFactors& factors, const double* X, Window<Dim> H,
+                                 Window<Dim> P, ContactBuffer& buffer) {
+  for (Index a = first; a < last; a += stress_width) {
+    const Index end = std::min<Index>(a + stress_width, last);
+    local_displacements<Dim>(bonds, a, end, X, H, buffer);
+    contact_scalars(bonds, bonds.begin[a], bonds.begin[end] - bonds.begin[a], factors, buffer);
+    contact_forces<Dim>(bonds, a, end, P, buffer);
+  }
+}
+
+/// Tensor of a record, the rest zero.
+template <int Dim> Mat3 tensor_of(const double* record) {
+  Mat3 t = Mat3::Zero();
+  for (int j = 0; j < Dim; ++j) {
+    for (int i = 0; i < Dim; ++i) t(i, j) = record[j * Lanes<Dim>::stride + i];
+  }
+  return t;
+}
+
+/// Tensors of four records into lanes l to l + 3 of h[Dim j + i].
+template <int Dim>
+CONCORD_INLINE void tensors_to_lanes(const double* const (&record)[4], int l,
+                                     double (&h)[Dim * Dim][stress_width]) {
+  for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {  // in the plane a register holds a tensor
+    v4d t[4];
+    for (int i = 0; i < 4; ++i) t[i] = load<v4d>(record[i] + 4 * k);
+    transpose(t[0], t[1], t[2], t[3]);
+    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
+      std::memcpy(&h[(Dim == 3 ? 3 * k : 0) + i][l], &t[i], sizeof(v4d));
+  }
+}
+
+/// The way back.
+template <int Dim>
+CONCORD_INLINE void lanes_to_tensors(const double (&p)[Dim * Dim][stress_width], int l,
+                                     Tensor<Dim>* tensor) {
+  for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {
+    v4d t[4] = {};
+    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
+      std::memcpy(&t[i], &p[(Dim == 3 ? 3 * k : 0) + i][l], sizeof(v4d));
+    transpose(t[0], t[1], t[2], t[3]);
+    for (int i = 0; i < 4; ++i) {
+      if constexpr (Dim == 3)
+        tensor[i].column[k] = t[i];
+      else
+        std::memcpy(&tensor[i], &t[i], sizeof(v4d));
+    }
+  }
+}
+
+/// P_a (53) of [first, last), and with contact + Q_a/V_a, from sum q (x) X in P; without
+/// contact f_a = 0. Returns the first particle with det F <= 0 or NaN, or -1.
+template <int Dim, StressLaw Law, bool Contact>
+CONCORD_CLONES Index stress_rows(const StressConstants& c, Index first, Index last,
+                                 const double* inverse_V, Window<Dim> H, Window<Dim> P) {
+  Index bad_particle = -1;
+  for (Index a = first; a < last; a += stress_width) {
+    const int count = std::min<Index>(stress_width, last - a);
+    double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width];
+    Tensor<Dim> tensor[stress_width];
+    for (int l = 0; l < stress_width; l += 4) {
+      const double* record[4];
+      for (int i = 0; i < 4; ++i) record[i] = H.at(a + std::min(l + i, count - 1));
+      tensors_to_lanes<Dim>(record, l, h);
+    }
+    const unsigned bad = stress_of_lanes<Dim, Law>(c, a, count, h, p);
+    for (int l = 0; l < stress_width; l += 4) lanes_to_tensors<Dim>(p, l, tensor + l);
+    for (int l = 0; l < count; ++l) {
+      double* record = P.at(a + l);
+      Tensor<Dim>& P_a = tensor[l];
+      if constexpr (Contact) {
+        const Tensor<Dim> twice = Tensor<Dim>::load(record);
+        const Vec<Dim> w = broadcast(-0.5 * inverse_V[a + l], Vec<Dim>{});
+        for (int k = 0; k < Dim; ++k) P_a.column[k] += twice.column[k] * w;
+      } else {
+        store(record + vector_at<Dim>, Vec<Dim>{});
+      }
+      P_a.store(record);
+    }
+    if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
+  }
+  return bad_particle;
+}
+
+/// Corrections to the force of a boundary particle: -P_b (B_ab + B_ba)/2, at b with P_a, and
+/// -P_a B_aa.
+template <int Dim>
+CONCORD_INLINE void force_correction(const SurfaceBonds& s, std::size_t row,
+                                     const Tensor<Dim>& P_a, Vec<Dim>& f_a, Window<Dim> P) {
+  f_a -= P_a.times(&s.B_self[row * Dim]);
+  for (Index k = s.begin[row]; k < s.begin[row + 1]; ++k) {
+    double* P_b = P.at(s.other[k]);
+    const double* B = &s.B_symmetric[static_cast<std::size_t>(k) * Dim];
+    f_a -= Tensor<Dim>::load(P_b).times(B);
+    store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - P_a.times(B));
+  }
+}
+
+/// f_a += -sum_b P_b B_ba over b including a (46), with sum_b B_ab = 0; off the surface sum_b
+/// P_b B_ab. The rows' own particles are complete after it.
+template <int Dim>
+CONCORD_CLONES void force_rows(const Bonds& bonds, Index first, Index last, Window<Dim> P) {
+  SurfaceCursor surface(bonds.surface, first);
+  const Index* begin = bonds.begin.data();
+  const Index* other = bonds.other.data();
+  const double* B_all = bonds.B.data();
+  for (Index a = first; a < last; ++a) {
+    double* record = P.at(a);
+    const Tensor<Dim> P_a = Tensor<Dim>::load(record);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+      double* P_b = P.at(other[k]);
+      const double* B = B_all + static_cast<std::size_t>(k) * Dim;
+      f_a += Tensor<Dim>::load(P_b).times(B);
+      store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - P_a.times(B));
+    }
+    if (a == surface.bonds.particle[surface.row])
+      force_correction<Dim>(surface.bonds, surface.row++, P_a, f_a, P);
+    store(record + vector_at<Dim>, f_a);
+  }
+}
+
+/// The vectors of records [first, last) into a column.
+template <int Dim>
+CONCORD_CLONES void copy_vectors(Window<Dim> window, Index first, Index last, double* column) {
+  for (Index a = first; a < last; ++a) {
+    store(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride,
+          load<Vec<Dim>>(window.at(a) + vector_at<Dim>));
+  }
 }
 
 }  // namespace concord::particle::delaunay

@@ -21,10 +21,10 @@ class DelaunayMethod final : public ParticleMethod {
   DelaunayMethod() : ParticleMethod(method_info()) {}
   std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                          const scene::Settings& settings,
-                                         const Executor&) const override {
+                                         const Executor& executor) const override {
     const Parameters parameters{settings.number("xi_n"), settings.number("xi_t"),
                                 settings.number("c1"), settings.number("c2")};
-    return std::make_unique<DelaunayModel>(body, problem, parameters);
+    return std::make_unique<DelaunayModel>(body, problem, parameters, executor);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cstring>
 
 namespace concord::particle::test {
@@ -129,6 +130,41 @@ TEST_P(EveryMethod, ThreadsDoNotChangeABit) {
     EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(double)), 0)
         << threads << " threads";
   }
+}
+
+TEST_P(EveryMethod, PartsHaveTheBitsOfTheWhole) {
+  Bench b(GetParam(), "spinning_block", 16);
+  if (!b.model->has_parts()) {
+    Column f = b.zeros();
+    const std::vector<ParticleRange> all{{0, b.body.n}};
+    EXPECT_THROW(b.model->forces_of(all, b.zeros(), b.zeros(), f, b.executor),
+                 std::logic_error);
+    return;
+  }
+  const Index n = b.body.n;
+  const auto S = static_cast<std::size_t>(b.body.stride);
+  const Column u = b.random_displacement(), whole = b.force(u);
+  const std::vector<ParticleRange> parts{{5, 6}, {200, 1111}, {n - 300, n}};
+  for (const int threads : {1, 3}) {
+    Column f(whole.size(), 1e300);
+    b.model->forces_of(parts, u, b.zeros(), f, Executor(threads));
+    for (Index a = 0; a < n; ++a) {
+      const bool in = std::any_of(parts.begin(), parts.end(), [&](const ParticleRange& r) {
+        return a >= r.first && a < r.last;
+      });
+      for (std::size_t i = 0; i < S; ++i)
+        ASSERT_EQ(f[a * S + i], in ? whole[a * S + i] : 1e300) << a << " of " << n;
+    }
+  }
+  const ParticleRange part{n / 2, n / 2 + 3}, reach = b.model->reach(part);
+  EXPECT_LT(reach.last - reach.first, n) << "the body is too small to show anything";
+  Column elsewhere = u;
+  for (Index a = 0; a < n; ++a) {
+    if (a < reach.first || a >= reach.last) elsewhere[a * S] += 0.1 * b.body.h;
+  }
+  Column f = whole;
+  b.model->forces_of({&part, 1}, elsewhere, b.zeros(), f, b.executor);
+  EXPECT_EQ(std::memcmp(f.data(), whole.data(), f.size() * sizeof(double)), 0);
 }
 
 TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {

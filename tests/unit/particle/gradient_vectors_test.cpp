@@ -2,12 +2,15 @@
 
 #include "particle/core/body.hpp"
 #include "particle/delaunay/bonds.hpp"
+#include "particle/delaunay/sweep.hpp"
 #include "scene/reader.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <random>
 
 namespace concord::particle::delaunay {
 namespace {
@@ -115,30 +118,82 @@ TEST_P(GradientVectors, EqualTheSumOverFacesOfTheCluster) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GradientVectors,
-                         testing::Values("swinging_cube", "cooks_membrane", "spinning_block"));
+TEST_P(GradientVectors, AreKeptInRows) {
+  const Bonds rows = make_bonds(body, true, Executor(2));
+  ASSERT_EQ(rows.count(), bonds.size());
+  const double scale = std::pow(body.h, body.dim - 1) * body.thickness;
+  std::size_t k = 0;
+  for (Index a = 0; a < body.n; ++a) {
+    for (Index r = rows.begin[a]; r < rows.begin[a + 1]; ++r, ++k) {
+      const Bond bond = bond_of(rows, body.dim, a, r);
+      ASSERT_EQ(bond.a, bonds[k].a);
+      ASSERT_EQ(bond.b, bonds[k].b);
+      EXPECT_LT((bond.B_ab - bonds[k].B_ab).norm() + (bond.B_ba - bonds[k].B_ba).norm(),
+                1e-15 * scale);
+      const double L = (body.position(bond.b) - body.position(bond.a)).norm();
+      EXPECT_DOUBLE_EQ(rows.area_over_length[r], interface_area(body.dim, bonds[k]) / L);
+    }
+  }
+}
 
-TEST(BondBlocks, KeepEveryBondOnceInsideAndTwiceAcross) {
-  const scene::Problem problem = scene::read_problem("swinging_cube");
-  const Body body = make_body(problem, 1.0 / 33, 0.2, 1);
-  const std::vector<Bond> bonds = gradient_vectors(body);
-  const Bonds blocked = block_bonds(body, bonds, {});
-  ASSERT_GE(blocked.blocks.size(), 2u);
-  std::size_t kept = 0, cut = 0;
-  for (const BondBlock& block : blocked.blocks) {
-    for (const BondRows* rows : {&block.regular, &block.surface}) {
-      for (std::size_t r = 0; r + 1 < rows->begin.size(); ++r) {
-        kept += rows->cut[r] - rows->begin[r];
-        cut += rows->begin[r + 1] - rows->cut[r];
-        for (Index k = rows->begin[r]; k < rows->begin[r + 1]; ++k) {
-          const bool inside = rows->other[k] >= block.first && rows->other[k] < block.last;
-          EXPECT_EQ(inside, k < rows->cut[r]);
-        }
+TEST_P(GradientVectors, OwnVectorOfBoundaryParticlesClosesTheSum) {  // (29)
+  const Bonds rows = make_bonds(body, false, Executor(1));
+  const Sums s = sums(body, bonds);
+  const double scale = std::pow(body.h, body.dim - 1) * body.thickness;
+  ASSERT_EQ(rows.surface.particle.back(), body.n);
+  for (std::size_t p = 0; p + 1 < rows.surface.particle.size(); ++p) {
+    Vec3 own = Vec3::Zero();
+    for (int i = 0; i < body.dim; ++i) own[i] = rows.surface.B_self[p * body.dim + i];
+    EXPECT_LT((own + s.over_second[rows.surface.particle[p]]).norm(), 1e-14 * scale);
+  }
+}
+
+TEST_P(GradientVectors, ReachBoundsTheRows) {
+  const Bonds rows = make_bonds(body, false, Executor(1));
+  const Reach reach(rows);
+  std::mt19937_64 generator(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const auto cut = static_cast<Index>(generator() % (body.n + 1));
+    const Index top = reach.top(cut), bottom = reach.bottom(cut);
+    EXPECT_LE(cut, top);
+    EXPECT_LE(bottom, cut);
+    for (const Bond& bond : bonds) {
+      if (bond.a < cut) {
+        EXPECT_LT(bond.b, top);
+      }
+      if (bond.b >= cut) {
+        EXPECT_GE(bond.a, bottom);
       }
     }
   }
-  EXPECT_EQ(kept + cut / 2, bonds.size());
-  EXPECT_EQ(cut % 2, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GradientVectors,
+                         testing::Values("swinging_cube", "cooks_membrane", "spinning_block"));
+
+TEST(Deal, CoversThePartsOnceInOrder) {
+  const std::vector<ParticleRange> parts{{3, 200}, {500, 501}, {640, 5000}};
+  for (const int workers : {1, 2, 3, 7}) {
+    const auto dealt = deal(parts, workers);
+    ASSERT_EQ(dealt.size(), static_cast<std::size_t>(workers));
+    std::vector<int> seen(5001, 0);
+    std::size_t most = 0;
+    for (const auto& ranges : dealt) {
+      std::size_t own = 0;
+      for (const ParticleRange& r : ranges) {
+        own += r.last - r.first;
+        for (Index a = r.first; a < r.last; ++a) ++seen[a];
+      }
+      most = std::max(most, own);
+    }
+    for (Index a = 0; a < 5001; ++a) {
+      const bool in = std::any_of(parts.begin(), parts.end(), [&](const ParticleRange& r) {
+        return a >= r.first && a < r.last;
+      });
+      EXPECT_EQ(seen[a], in ? 1 : 0) << a;
+    }
+    EXPECT_LE(most, 4558u / workers + 2 * Reach::chunk);
+  }
 }
 
 }  // namespace
