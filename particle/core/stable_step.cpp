@@ -116,4 +116,30 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
   return std::sqrt(std::max(0.0, estimates.back()));
 }
 
+std::vector<double> SpectralRadius::row_norms(std::span<const double> u, int probes) {
+  const ElasticResponse elastic(m_model);
+  const Body& body = m_model.body();
+  Column w(u.size(), 0.0), Aw(u.size(), 0.0);
+  m_shifted = m_force = m_velocity = w;
+  std::vector<double> squares(body.n, 0.0);
+  for (int p = 0; p < probes; ++p) {
+    for (Index a = 0; a < body.n; ++a) {
+      for (int i = 0; i < body.dim; ++i) {
+        const double sign = scene::uniform_random(4711 + p, a, i) < 0.5 ? -1 : 1;
+        w[static_cast<std::size_t>(a) * body.stride + i] = sign;
+      }
+    }
+    m_constraints.clear(w);
+    apply(u, w, Aw);
+    for (Index a = 0; a < body.n; ++a) {
+      for (int i = 0; i < body.dim; ++i) {
+        const double x = Aw[static_cast<std::size_t>(a) * body.stride + i];
+        squares[a] += x * x;
+      }
+    }
+  }
+  for (double& s : squares) s = std::sqrt(s / (probes * body.dim));
+  return squares;
+}
+
 }  // namespace concord::particle
