@@ -4,7 +4,7 @@ import math
 
 from . import frames
 from .balance import SIGN, WORDS, broken
-from .digits import engineering, exact, pretty, ticks
+from .digits import engineering, exact, pretty, text, ticks
 from .kinds import is_static
 from .loading import number
 from .palette import RED_BLUE, VIRIDIS
@@ -48,6 +48,17 @@ def _as_wanted(job):
 def time_text(time, row):
     factor, unit = (1, "") if is_static(row) else engineering(time, "s") if time < 0.1 else (1, "s")
     return f"t = {exact(time * factor)} {unit}".strip()
+
+
+def row_text(time, jobs):
+    """What stands above a row of an instant: the time and, of bodies that are followed, where they are."""
+    words = time_text(time, jobs[0]["row"])
+    if not jobs[0]["followed"]:
+        return words
+    middle = [sum(j["middle"][k] for j in jobs) / len(jobs) for k in range(3)]
+    reach = max(map(abs, middle))
+    places = [f"{axis} = {text(v)} m" for axis, v in zip("xyz", middle) if abs(v) > 0.01 * reach]
+    return f"{words}; bodies about {', '.join(places)}"
 
 
 def triad():

@@ -104,6 +104,7 @@ def facts(path, color, scale, crop=None):
         return {"missing": f"every value of '{color}' is NaN"}
     low, high = good_positions.min(axis=0), good_positions.max(axis=0)
     flat = bool(high[2] - low[2] < 1e-9 * max((high - low).max(), 1e-300))
+    middle = good_positions.mean(axis=0).tolist()
     plate = None if flat or crop else held(frame)
     if plate:
         good_positions = np.concatenate([good_positions, plate])
@@ -113,7 +114,7 @@ def facts(path, color, scale, crop=None):
     particles = is_particles(frame)
     return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
             "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
-            "particles": particles, "plate": plate, "nan": int(len(data) - np.isfinite(data).sum()),
+            "particles": particles, "plate": plate, "middle": middle, "nan": int(len(data) - np.isfinite(data).sum()),
             "plane": flat and (particles or plane_cells.supported(frame))}
 
 

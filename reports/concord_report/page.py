@@ -71,8 +71,10 @@ def _group(group):
             "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
             "panel_width": captions.panel_width(drawn[0], -(-len(jobs) // (columns or 1))),
             "triad": [] if drawn[0]["view"]["flat"] else captions.triad(), "note": captions.note(drawn)}
-    for k, one in enumerate(view["pictures"] if captions.in_rows(whole) else []):
-        one["instant"] = "" if k % columns else captions.time_text(whole["times"][k // columns], drawn[0]["row"])
+    for k in range(0, len(jobs), columns) if captions.in_rows(whole) else ():
+        there = [job for job in jobs[k:k + columns] if "missing" not in job]
+        time = whole["times"][k // columns]
+        view["pictures"][k]["instant"] = captions.row_text(time, there) if there else f"t = {time:g} s"
     return view
 
 
@@ -148,6 +150,7 @@ def build(studies, store, warnings, out=None):
     ordered = [(s, cases_of(s)) for s in studies]
     for study, cases in ordered:
         quantities.learn(histories.header_of(study))
+        quantities.ERRORS.update(name for row in study.rows for name in row.get("error_sources") or ())
         warnings += _failed_runs(study, cases)
     jobs = {s.name: pictures.prepare(s, c, store, warnings) for s, c in ordered}
     pictures.render_missing([j for js in jobs.values() for j in js], store, warnings)

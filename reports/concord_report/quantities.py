@@ -50,6 +50,7 @@ FIELDS = {  # point fields of the frames: (text, unit)
 
 COMPARED = ("plastic_strain", "kirchhoff_mises", "von_mises", "pressure", "energy_density", "damage")
 
+ERRORS = set()  # names of [[error]] entries in the studies: "tip_peak"
 SEEN = {}  # units that history.csv headers tell of scene quantities: "tip_z" -> "m"
 
 
@@ -77,6 +78,8 @@ def name_and_unit(path):
         name = last.removeprefix(compared + "_")
         return (f"relative L2 difference of {FIELDS[compared][0]}"
                 + ("" if name == "difference" else f", {words(name)}"), "")
+    if path.startswith("errors.") and last in ERRORS:
+        return f"error of {words(last)}", ""
     for end, unit in UNITS:
         if last.endswith(end) and len(last) > len(end):
             return words(last[: -len(end)]), unit

@@ -99,7 +99,7 @@ def _one_column(study, runs, column):
     alone = len({case.index for case, *_ in runs}) == 1
     out = []
     for case, level, rank, count in runs:
-        more = {"dash": rank, "fade": 1 + 0.15 * rank} if alone and count > 1 else {}
+        more = {"dash": rank, "fade": 1 + 0.3 * rank} if alone and count > 1 else {}
         line = _line(study, case, level, column, rank=rank, label=_run(case, level, count > 1), **more)
         out += [line] if line else []
     return out

@@ -116,7 +116,10 @@ class Instants(unittest.TestCase):
         self.assertLess(np.ptp(high - low, axis=0).max(), 1e-12)  # of one size
         self.assertEqual(low[0].tolist(), low[1].tolist())
         self.assertGreater(np.abs(low[2] - low[0]).max(), 5)
-        self.assertFalse(any(j["followed"] for j in self.jobs("held", times=[0.5, 1])))
+        self.assertEqual(captions.row_text(0.5, jobs[:2]), "t = 0.5 s; bodies about x = 11.5 m, y = 0.500 m, z = 0.663 m")
+        held = self.jobs("held", times=[0.5, 1])
+        self.assertFalse(any(j["followed"] for j in held))
+        self.assertEqual(captions.row_text(0.5, held[:2]), "t = 0.5 s")
 
     def test_the_plate_stands_behind_the_face_that_is_held(self):
         plate = np.array(self.jobs("held", times=[1])[0]["plate"])

@@ -223,6 +223,12 @@ class Balance(unittest.TestCase):
 
 
 class Names(unittest.TestCase):
+    def test_errors_of_a_study_are_called_so(self):
+        before = quantities.axis("errors.tip_w")
+        quantities.ERRORS.add("tip_w")
+        self.addCleanup(quantities.ERRORS.discard, "tip_w")
+        self.assertEqual((before, quantities.axis("errors.tip_w")), ("tip w", "error of tip w"))
+
     def test_probes_are_cases_of_their_own(self):
         rows = [row("fem", "Q2", 1.0), {**row("fem", "Q2", 2.0), "probe": "stable_step"}]
         found = cases.cases_of(study(rows))
