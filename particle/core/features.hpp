@@ -41,6 +41,12 @@ constexpr bool output = false;
 constexpr bool output = true;      ///< history rows and frames during a run
 #endif
 
+#ifdef CONCORD_WITHOUT_REST
+constexpr bool rest = false;
+#else
+constexpr bool rest = true;  ///< regions at rest left out of the step
+#endif
+
 #ifdef CONCORD_WITHOUT_PENALTY
 constexpr bool penalty = false;
 #else

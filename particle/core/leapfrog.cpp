@@ -84,7 +84,7 @@ void Leapfrog::follow_rest() {
 }
 
 void Leapfrog::evaluate() {
-  if (m_rest)
+  if (features::rest && m_rest)
     m_model.forces_of(m_awake, m_u, m_v, m_f, m_executor);
   else
     m_model.forces(m_u, m_v, m_f, m_executor);
@@ -220,7 +220,7 @@ void Leapfrog::step(double dt) {
   drift(dt);
   if (dissipates) m_dissipation.add(kick_dt, m_v);
   m_dt_last = dt;
-  if (m_rest) follow_rest();
+  if (features::rest && m_rest) follow_rest();
   evaluate();
   if (features::plasticity) m_model.commit();
   m_in_step = false;
@@ -292,7 +292,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
                       bad.quantity == "det F" ? "det F <= 0 or not a number" : "");
   };
   move_all();
-  if (options.rest_regions && m_model.has_parts()) {
+  if (features::rest && options.rest_regions && m_model.has_parts()) {
     m_rest.emplace(m_model, m_constraints, m_loads, m_u, m_v);
     follow_rest();
   }
