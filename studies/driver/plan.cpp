@@ -87,6 +87,7 @@ class Planner {
     row.command = shell_line(job.arguments);
     job.arguments.insert(job.arguments.end(), {"--out", job.folder.string()});
     job.weight += std::pow(resolution, problem.dim() + (steps(problem) ? 1 : 0));
+    job.weight *= 1 + m_entry.repeats;
     plan.rows.push_back(std::move(row));
     plan.jobs.push_back(std::move(job));
   }

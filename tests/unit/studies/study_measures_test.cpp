@@ -95,6 +95,10 @@ TEST_F(StudyFile, ReadsMatchedErrors) {
   EXPECT_EQ(read(plot + "quantity = \"errors.e\"\ntime = \"total\"\n").plots[0].time,
             WorkTime::total);
   expect_error(plot, 8, "quantity");
+  expect_error("timing = true\n" + one_case +
+                   "[[case]]\nscene = \"bar\"\nmethod = \"fem\"\nresolutions = [4]\n"
+                   "[[plot]]\nkind = \"work_precision\"\nquantity = \"errors.e\"\n",
+               13, "plot.scene");
   expect_error(one_case + "[[plot]]\nkind = \"cost\"\nquantity = \"h\"\ntime = \"total\"\n", 11,
                "time");
 }
