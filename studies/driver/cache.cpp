@@ -2,6 +2,7 @@
 
 #include "scene/interrupt.hpp"
 #include "scene/output.hpp"
+#include "studies/driver/code_hash.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -62,18 +63,21 @@ fs::path scene_library() {
   return fs::canonical(info.dli_fname);
 }
 
-/// Files that compute a method, or probe it: probes are the program's.
-std::vector<fs::path> binaries_of(const std::string& method, bool probe) {
-  const fs::path library = scene_library(), program = "/proc/self/exe";
+/// Hash of the code that computes a method, or probes it. The finite elements are a module of
+/// their own; probes and the other methods are linked into the program, which knows a hash of
+/// them.
+std::string hash_code(const std::string& method, bool probe) {
+  const fs::path library = scene_library();
   const fs::path module = library.parent_path() / "libconcord_fem.so";
   const bool own_module = method == "fem" && fs::exists(module);
-  if (own_module && probe) return {library, module, program};
-  return {library, own_module ? module : program};
-}
-
-std::string hash_binaries(const std::string& method, bool probe) {
   ContentHash hash;
-  for (const fs::path& file : binaries_of(method, probe)) hash.add_file(file);
+  hash.add_file(library);
+  if (own_module) hash.add_file(module);
+  if (own_module && !probe) return hash.digits();
+  if (LinkedCode::hash().empty())
+    hash.add_file("/proc/self/exe");
+  else
+    hash.add(LinkedCode::hash());
   return hash.digits();
 }
 
@@ -83,12 +87,12 @@ std::string build_hash(const std::string& method, bool probe) {
   // Binaries do not change while we run.
   static std::map<std::pair<std::string, bool>, std::string> known;
   auto& hash = known[{method, probe}];
-  if (hash.empty()) hash = hash_binaries(method, probe);
+  if (hash.empty()) hash = hash_code(method, probe);
   return hash;
 }
 
 bool build_unchanged(const std::string& method, bool probe) {
-  return hash_binaries(method, probe) == build_hash(method, probe);
+  return hash_code(method, probe) == build_hash(method, probe);
 }
 
 std::string cache_key(const scene::Problem& problem, const RunKey& run) {

@@ -35,9 +35,9 @@ struct RunKey {
   bool timed = false;  ///< ran alone: its wall time means something
 };
 
-/// Hash of the binaries that compute a method: the program and the scene library; for `fem`,
-/// whose code lives in a module of its own, the module and the scene library; for probes of it
-/// all three.
+/// Hash of the code that computes a method: the scene library, and what the program is linked
+/// from that makes runs (code_hash.hpp); for `fem`, whose code lives in a module of its own,
+/// the scene library and the module; for probes of it all three. The commit is in none of them.
 std::string build_hash(const std::string& method, bool probe = false);
 
 /// False when the binaries have been replaced since build_hash was first asked: what runs now

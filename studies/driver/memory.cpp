@@ -19,13 +19,14 @@ double status_bytes(const std::string& name) {
 
 }  // namespace
 
-MemoryUse::MemoryUse() : m_start(status_bytes("VmRSS:")) {
+MemoryUse::MemoryUse() : m_start(status_bytes("RssAnon:")) {
   std::ofstream("/proc/self/clear_refs") << 5;  // proc(5): sets the peak to what is held now
 }
 
 double MemoryUse::bytes_per_particle(long particles) const {
   if (particles <= 0) return std::nan("");
-  return (status_bytes("VmHWM:") - m_start) / static_cast<double>(particles);
+  const double peak = status_bytes("VmHWM:") - status_bytes("RssFile:");
+  return (peak - m_start) / static_cast<double>(particles);
 }
 
 std::string with_memory(const std::string& summary, double bytes_per_particle) {

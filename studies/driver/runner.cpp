@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -152,6 +153,7 @@ RunnerResult run_cases(const Study& study, const RunnerOptions& options) {
   fs::remove_all(options.out / "runs");
   Plan plan = make_plan(study, options.out);
   const Cache cache(cache_folder());
+  ::setenv("CONCORD_CACHE", fs::absolute(cache_folder()).c_str(), 1);  // runs keep bodies there
   RunnerResult result;
   Crew crew(study, plan, cache, result);
   std::vector<Job> missing;
