@@ -19,7 +19,8 @@ ProbeInfo checkerboard_info() {
                      "of the displacements, in spacings")},
       {{"restoring", "1",
         "least Rayleigh quotient over all alternating displacements, over that of a shear wave "
-        "as short, c_s^2 (pi/h)^2: below 0 they grow"},
+        "as short, c_s^2 (pi/h)^2: below 0 they grow. They fade towards the surface as half a "
+        "sine along every axis, so that surface particles do not answer for the others"},
        {"restoring_corner", "1", "the same over displacements that alternate along every axis"},
        {"growth_rate", "c_s pi/h", "sqrt(-restoring) where it is negative, else 0"}}};
   for (const scene::ParameterInfo& option : deformation_options())
@@ -27,11 +28,30 @@ ProbeInfo checkerboard_info() {
   return info;
 }
 
-/// Alternating displacements of unit mass norm: columns, one a pattern and component.
+/// Product of sin(pi s_i), s_i from 0 to 1 along every axis: half a sine, 0 on the surface of a
+/// block.
+std::vector<double> envelope(const scene::DiscreteBody& body) {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+  for (const Vec3& X : body.positions()) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  std::vector<double> values;
+  for (const Vec3& X : body.positions()) {
+    double value = 1;
+    for (int i = 0; i < body.dim(); ++i)
+      value *= std::sin(M_PI * (X[i] - low[i]) / (high[i] - low[i]));
+    values.push_back(value);
+  }
+  return values;
+}
+
+/// Alternating displacements times the envelope: columns, one a pattern and component.
 Eigen::MatrixXd displacements(const scene::DiscreteBody& body,
                               const std::vector<std::vector<double>>& patterns) {
   const auto dim = static_cast<std::size_t>(body.dim());
   const std::size_t n = body.positions().size();
+  const std::vector<double> fades = envelope(body);
   Eigen::MatrixXd D = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n * dim),
                                             static_cast<Eigen::Index>(patterns.size() * dim));
   for (std::size_t p = 0; p < patterns.size(); ++p) {
@@ -39,7 +59,7 @@ Eigen::MatrixXd displacements(const scene::DiscreteBody& body,
       for (std::size_t i = 0; i < dim; ++i) {
         if ((body.prescribed(static_cast<Index>(a)) >> i & 1U) == 0)
           D(static_cast<Eigen::Index>(a * dim + i), static_cast<Eigen::Index>(p * dim + i)) =
-              patterns[p][a];
+              fades[a] * patterns[p][a];
       }
     }
   }

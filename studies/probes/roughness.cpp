@@ -27,10 +27,9 @@ std::vector<int> nearest(std::span<const Vec3> points, std::size_t a, std::size_
 
 }  // namespace
 
-std::vector<double> roughness(int dim, std::span<const Vec3> points,
-                              std::span<const double> values) {
+Parts split_roughness(int dim, std::span<const Vec3> points, std::span<const double> values) {
   const std::size_t count = dim == 3 ? 18 : 8;
-  std::vector<double> result;
+  Parts parts;
   for (std::size_t a = 0; a < points.size(); ++a) {
     const std::vector<int> around = nearest(points, a, count);
     Vec3 centre = Vec3::Zero();
@@ -49,9 +48,10 @@ std::vector<double> roughness(int dim, std::span<const Vec3> points,
         A(row, 1 + i) = (points[around[k]][i] - points[a][i]) / distance;
       y[row] = values[around[k]];
     }
-    result.push_back(values[a] - A.colPivHouseholderQr().solve(y)[0]);
+    parts.smooth.push_back(A.colPivHouseholderQr().solve(y)[0]);
+    parts.rough.push_back(values[a] - parts.smooth.back());
   }
-  return result;
+  return parts;
 }
 
 double trimmed_rms(std::vector<double> values) {

@@ -24,14 +24,14 @@ ProbeInfo spectrum_info() {
       "zero-energy modes of corrected gradients: Belytschko, Guo, Liu and Xiao, Int. J. Numer. "
       "Methods Eng. 48 (2000) 1359-1400",
       {number_option("low", "E/(rho L^2)", "10", 0, 1e300, ">= 0",
-                     "modes below this eigenvalue are counted as low"),
-       number_option("reference", "1", "4", 0, 100, "0 .. 100",
+                     "modes below this eigenvalue are counted as low; zero modes are not"),
+       number_option("reference", "1", "3", 0, 100, "0 .. 100",
                      "resolution of the fem Q2 body whose low modes are the physical ones; 0: "
                      "none")},
       {{"zero_modes", "1", "eigenvalues below 1e-9 of the largest, in size"},
        {"zero_modes_beyond_rigid", "1",
         "zero_modes less the 6 (3 in the plane) of a free body"},
-       {"low_modes", "1", "eigenvalues below `low`, zero modes included"},
+       {"low_modes", "1", "eigenvalues between zero modes and `low`"},
        {"reference_low_modes", "1", "those of fem Q2"},
        {"spurious_low_modes", "1", "low_modes less reference_low_modes"},
        {"spurious_share", "1", "spurious_low_modes over all modes"},
@@ -58,6 +58,15 @@ long below(const Modes& modes, double limit) {
   return std::lower_bound(modes.real.begin(), modes.real.end(), limit) - modes.real.begin();
 }
 
+double zero_of(const Modes& modes) {
+  return zero_below * std::max(std::abs(modes.real.front()), modes.real.back());
+}
+
+/// Eigenvalues above the zero modes and below `limit`.
+double low_modes(const Modes& modes, double limit) {
+  return static_cast<double>(below(modes, limit) - below(modes, zero_of(modes)));
+}
+
 class Spectrum final : public Probe {
  public:
   const ProbeInfo& info() const override { return m_info; }
@@ -73,8 +82,7 @@ class Spectrum final : public Probe {
     const Modes found = modes(*body, deformed(*body, request.options));
     const double unit = unit_of(request.problem);
     write(request, found, unit);
-    const double largest = std::max(std::abs(found.real.front()), found.real.back());
-    const double zero = zero_below * largest;
+    const double zero = zero_of(found);
     const auto zeros = static_cast<double>(below(found, zero) - below(found, -zero));
     auto& q = result.quantities;
     q["zero_modes"] = zeros;
@@ -85,9 +93,9 @@ class Spectrum final : public Probe {
     q["asymmetry"] = found.asymmetry;
     add_growth(found, zero, unit, q);
     const double limit = request.options.number("low") * unit;
-    q["low_modes"] = static_cast<double>(below(found, limit));
+    q["low_modes"] = low_modes(found, limit);
     if (request.options.number("reference") > 0) {
-      q["reference_low_modes"] = static_cast<double>(below(reference(request), limit));
+      q["reference_low_modes"] = low_modes(reference(request), limit);
       q["spurious_low_modes"] = q["low_modes"] - q["reference_low_modes"];
       q["spurious_share"] = q["spurious_low_modes"] / static_cast<double>(found.real.size());
     }
