@@ -134,15 +134,15 @@ def grouped(value):
     return (MINUS if value < 0 else "") + out
 
 
-def duration(seconds):
+def duration(seconds, digits=2):
     """Wall time for people: 0.41 ms, 3.2 s, 4.1 min."""
     seconds = number(seconds)
     if seconds is None:
         return DASH
     for limit, factor, unit in ((1e-3, 1e6, "µs"), (1, 1e3, "ms"), (120, 1, "s"), (7200, 1 / 60, "min")):
         if seconds < limit:
-            return f"{plain(seconds * factor, 2)} {unit}"
-    return f"{plain(seconds / 3600, 2)} h"
+            return f"{plain(seconds * factor, digits)} {unit}"
+    return f"{plain(seconds / 3600, digits)} h"
 
 
 PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1, ""), (1e3, "k"), (1e6, "M"), (1e9, "G"))

@@ -1,10 +1,13 @@
 """Tables of time, memory and resolution at matched errors, as the study found them."""
 
+import re
+
 from .balance import NOTE, SIGN
+from .cases import variant_text
 from .digits import DASH, duration, exact, pretty
 from .fronts import TIMES, case_of, fem_note
 from .loading import number
-from .palette import swatch
+from .palette import method_name, swatch
 from .quantities import name_and_unit
 
 
@@ -28,7 +31,20 @@ def _table(cases, entry):
              fem_note([case for case, _ in pairs], entry.get("note"))]
     return {"caption": entry.get("title") or f"{time.capitalize()} at one {name}", "name": name,
             "levels": [_level(level) for level in entry["levels"]], "lines": lines,
-            "sentences": [str(s) for s in entry.get("sentences") or []], "note": " ".join(filter(None, notes))}
+            "sentences": [sentence(s, [case for case, _ in pairs]) for s in entry.get("sentences") or []], "note": " ".join(filter(None, notes))}
+
+
+def sentence(words, cases):
+    """The study's words with cases, scenes and times as the table has them."""
+    for case in sorted(cases, key=lambda c: -len(c.variant)):
+        scene = case.scene.replace("_", " ")
+        if case.variant:
+            words = words.replace(f"{case.method} ({case.variant})", case.label.removesuffix(f", {scene}"))
+        words = words.replace(case.scene, scene) if case.scene else words
+    for method in {case.method for case in cases}:
+        words = re.sub(rf"(?<!\w){method}(?= (?:is|takes|does|has)\b)", method_name(method), words)
+    seconds = r"(?<![\w.])(\d+(?:\.\d+)?(?:e[-+]?\d+)?) s\b"
+    return variant_text(re.sub(seconds, lambda m: duration(float(m[1]), 3), words))
 
 
 def _level(level):

@@ -123,6 +123,10 @@ class Matched(Fixture):
         self.assertIn("⊗", self.table["lines"][2]["cells"][0]["below"])
         self.assertIn("does not close", self.table["note"])
 
+    def test_sentences_name_cases_and_times_as_the_table_does(self):
+        self.assertEqual(self.table["sentences"], [
+            "cube fixture, 1\u202f%: Delaunay ξ 1 is the fastest with 3.05 ms; TLSPH takes 4.1 times as long."])
+
     def test_no_value_says_why(self):
         cell = matched._cell({"at": [{"level": 0.1, "status": "no value", "reason": "every run failed"}]}, 0.1)
         self.assertEqual((cell["text"], cell["below"], cell["value"]), ("–", "every run failed", None))
@@ -194,7 +198,7 @@ class Heatmaps(Fixture):
         words = outputs.summary([self.study], [])
         self.assertIn("| zero modes beyond rigid | 0 | 12 | 3 | 0 |", words)
         self.assertIn("| compression [%] | 80 | 64 | 41 ⊗ | 55 |", words)
-        self.assertIn("- cube fixture, 1 %: Delaunay", words)
+        self.assertIn("- cube_fixture, 1 %: delaunay (xi 1) is", words)
 
 
 class Page(Fixture):
