@@ -27,6 +27,8 @@ FEATURES = (
     ("return map", "plastic_elastic", "count_without_return_map", "plastic_flowing"),
     ("damping", "plain", "count_without_damping", "damped"),
     ("output", "plain", "count_without_output", "recorded"),
+    ("regions at rest", "pulse", "count_without_rest", "pulse_resting"),
+    ("rest, all moves", "plain", "count_without_rest", "pulse_resting"),
     ("penalty of SPH", "sph_plain", "count_without_penalty", "sph_penalty"),
     ("viscosity of SPH", "sph_penalty", "count_without_viscosity", "sph_viscous"),
 )

@@ -84,8 +84,21 @@ void delaunay_steps(const std::string& name, const scene::Problem& problem, doub
   delaunay::Parameters parameters;
   parameters.xi_n = parameters.xi_t = xi;
   parameters.c1 = c1;
-  delaunay::DelaunayModel model(body, problem, parameters);
+  delaunay::DelaunayModel model(body, problem, parameters, executor);
   count_steps(name, problem, body, model, executor, tune);
+}
+
+/// A rod pushed at one end, so that most of it is at rest; `rest`: whether that is used.
+void pulse_steps(const std::string& name, bool rest) {
+  scene::Problem problem = rubber();
+  problem.initial_displacement.reset();
+  problem.initial_velocity.emplace();
+  problem.initial_velocity->component[2] = scene::Expression("max(0, 0.1 - Z)", {});
+  const Body body = instructions::lattice(problem, {5, 5, 80}, 0.05);
+  const Executor executor(1);
+  delaunay::DelaunayModel model(body, problem, {}, executor);
+  count_steps(name, problem, body, model, executor,
+              [&](LeapfrogOptions& o) { o.rest_regions = rest; });
 }
 
 void sph_steps(const std::string& name, double psi, PenaltyForm penalty, double alpha) {
@@ -120,6 +133,8 @@ const Case cases[] = {
      }},
     {"contact", [](Name n) { delaunay_steps(n, rubber(), 1, 0); }},
     {"contact_viscous", [](Name n) { delaunay_steps(n, rubber(), 1, 0.1); }},
+    {"pulse", [](Name n) { pulse_steps(n, false); }},
+    {"pulse_resting", [](Name n) { pulse_steps(n, true); }},
     {"plastic_elastic",
      [](Name n) { delaunay_steps(n, steel(Dimension::plane_strain, slow), 0, 0); }},
     {"plastic_flowing",
