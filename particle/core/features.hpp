@@ -44,7 +44,7 @@ constexpr bool output = true;      ///< history rows and frames during a run
 #ifdef CONCORD_WITHOUT_REST
 constexpr bool rest = false;
 #else
-constexpr bool rest = true;  ///< regions at rest left out of the step
+constexpr bool rest = true;        ///< regions at rest left out of the step
 #endif
 
 #ifdef CONCORD_WITHOUT_PENALTY
