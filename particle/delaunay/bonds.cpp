@@ -162,7 +162,7 @@ Bonds make_bonds(const Body& body, bool contact, const Executor& executor) {
   if (contact) bonds.area_over_length.reserve(count + bond_padding);
   SurfaceBonds& s = bonds.surface;
   s.begin.assign(1, 0);
-  for (Piece& piece : pieces) {
+  const auto add = [&](Piece& piece) {
     for (const Index length : piece.length) bonds.begin.push_back(bonds.begin.back() + length);
     for (const Index length : piece.surface_length) s.begin.push_back(s.begin.back() + length);
     take(bonds.other, piece.other);
@@ -170,6 +170,17 @@ Bonds make_bonds(const Body& body, bool contact, const Executor& executor) {
     take(bonds.area_over_length, piece.area_over_length);
     take(s.other, piece.surface_other);
     take(s.B_symmetric, piece.B_symmetric);
+  };
+  const std::size_t all = Executor::pieces(body.n),
+                    batch = 4 * static_cast<std::size_t>(executor.threads());
+  for (std::size_t done = 0; done < all; done += batch) {  // few pieces in memory at a time
+    std::vector<Piece> pieces(std::min(batch, all - done));
+    executor.for_each(pieces.size(), [&](std::size_t k) {
+      const auto first = static_cast<Index>((done + k) * Executor::piece),
+                 last = std::min(body.n, first + static_cast<Index>(Executor::piece));
+      pieces[k] = make_piece(body, stars, first, last, contact);
+    });
+    for (Piece& piece : pieces) add(piece);
   }
   if (contact) bonds.area_over_length.insert(bonds.area_over_length.end(), bond_padding, 0.0);
   for (Index a = 0; a < body.n; ++a) {
