@@ -148,11 +148,11 @@ void Recorder::frame(const State& state) {
   m_frames.write(state.t, x, fields);
 }
 
-void Recorder::add_invariants(scene::Result& result) const {
+void Recorder::add_invariants(scene::Result& result, bool damped) const {
   if (!m_any) return;
   if (m_largest_energy > 0)
     result.invariants["energy_drift"] = m_energy_change / m_largest_energy;
-  if (!m_free || m_linear_scale == 0) return;
+  if (damped || !m_free || m_linear_scale == 0) return;
   if (m_steady) result.invariants["linear_momentum_drift"] = m_linear_change / m_linear_scale;
   if (m_unloaded)
     result.invariants["angular_momentum_drift"] = m_angular_change / m_angular_scale;

@@ -42,8 +42,8 @@ class Recorder {
   /// trapezoidal rule for the external work); and for a body that is free, the largest change
   /// of momenta over the largest sum m|v| (sum m |x||v|): linear_momentum_drift, less the
   /// impulse of loads, where loads do not vary in time, and angular_momentum_drift, where there
-  /// are none.
-  void add_invariants(scene::Result& result) const;
+  /// are none. Mass damping takes momentum: `damped` runs have no drift of it.
+  void add_invariants(scene::Result& result, bool damped = false) const;
   /// Adds nonaffine_energy_share and checkerboard of the last row, their largest values
   /// (.._max), and the share of the energies summed over the rows
   /// (nonaffine_energy_share_mean).
