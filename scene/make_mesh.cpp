@@ -60,7 +60,7 @@ std::vector<std::size_t> elements_of(int dim, int tag, int type, const Problem& 
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < types.size(); ++i) {
     if (types[i] == type) {
-      found = nodes[i];
+      found = std::move(nodes[i]);
     } else {
       throw InputError(
           problem.geometry_where, "geometry",
@@ -103,8 +103,11 @@ void collect_cells(Mesh& mesh, const Problem& problem) {
   std::vector<std::size_t> cells;
   for (const Entity& entity : mesh.entities) {
     if (entity.dim != mesh.dim) continue;
-    const auto found = elements_of(entity.dim, entity.tag, type, problem);
-    cells.insert(cells.end(), found.begin(), found.end());
+    auto found = elements_of(entity.dim, entity.tag, type, problem);
+    if (cells.empty())
+      cells = std::move(found);
+    else
+      cells.insert(cells.end(), found.begin(), found.end());
   }
   if (cells.empty())
     throw InputError(problem.geometry_where, "geometry",
@@ -113,7 +116,9 @@ void collect_cells(Mesh& mesh, const Problem& problem) {
                                    : "a .geo with at least one surface in the plane Z = 0");
   mesh.nodes_per_cell = node_count(type);
   const NodeTable table = collect_nodes(mesh, cells);
+  mesh.cells.reserve(cells.size());
   for (const std::size_t tag : cells) mesh.cells.push_back(table[tag]);
+  std::vector<std::size_t>().swap(cells);
   orient_cells(mesh, problem);
 
   std::vector<Index> facets, facet_entity;

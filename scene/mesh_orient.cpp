@@ -9,28 +9,45 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <vector>
 
 namespace concord::scene {
 namespace {
 
-double corner_jacobian(const Mesh& mesh, const Index* cell, int corner) {
+/// The corners next to a corner: where each edge of its Jacobian goes, with its sign.
+struct Corner {
+  int here = 0;
+  std::array<int, 3> other{};
+  std::array<double, 3> sign{1, 1, 1};
+};
+
+std::vector<Corner> corners_of(const Mesh& mesh) {
+  if (mesh.shape == CellShape::simplex) return {{0, {1, 2, 3}, {1, 1, 1}}};
+  std::vector<Corner> corners;
+  for (int here = 0; here < corner_count(mesh.shape, mesh.dim); ++here) {
+    Corner corner{here, {}, {}};
+    for (int other = 0; other < corner_count(mesh.shape, mesh.dim); ++other) {
+      const Vec3 step = hypercube_corner(other, mesh.dim) - hypercube_corner(here, mesh.dim);
+      if (step.cwiseAbs().sum() != 2) continue;
+      int axis = 0;
+      step.cwiseAbs().maxCoeff(&axis);
+      corner.other[static_cast<std::size_t>(axis)] = other;
+      corner.sign[static_cast<std::size_t>(axis)] = step[axis] / 2;
+    }
+    corners.push_back(corner);
+  }
+  return corners;
+}
+
+double corner_jacobian(const Mesh& mesh, const Index* cell, const Corner& corner) {
   const auto X = [&](int c) -> const Vec3& {
     return mesh.nodes[static_cast<std::size_t>(cell[c])];
   };
   Mat3 edges = Mat3::Identity();
-  if (mesh.shape == CellShape::simplex) {
-    for (int k = 0; k < mesh.dim; ++k) edges.col(k) = X(k + 1) - X(0);
-  } else {
-    const Vec3 here = hypercube_corner(corner, mesh.dim);
-    for (int other = 0; other < corner_count(mesh.shape, mesh.dim); ++other) {
-      const Vec3 step = hypercube_corner(other, mesh.dim) - here;
-      int axis = 0;
-      if (step.cwiseAbs().sum() != 2) continue;
-      step.cwiseAbs().maxCoeff(&axis);
-      edges.col(axis) = (X(other) - X(corner)) * (step[axis] / 2);
-    }
+  for (int axis = 0; axis < mesh.dim; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    edges.col(axis) = (X(corner.other[k]) - X(corner.here)) * corner.sign[k];
   }
-  if (mesh.dim == 2) edges.col(2) = Vec3::UnitZ();
   return edges.determinant();
 }
 
@@ -65,7 +82,7 @@ Vec3 hypercube_corner(int corner, int dim) {
 }
 
 void orient_cells(Mesh& mesh, const Problem& problem) {
-  const int corners = mesh.shape == CellShape::simplex ? 1 : corner_count(mesh.shape, mesh.dim);
+  const std::vector<Corner> corners = corners_of(mesh);
   const int type = gmsh_element(mesh.shape, mesh.dim, mesh.order);
   const std::vector<int> mirror = reflection(type);
   const auto per_cell = static_cast<std::size_t>(mesh.nodes_per_cell);
@@ -74,8 +91,8 @@ void orient_cells(Mesh& mesh, const Problem& problem) {
     Index* cell = &mesh.cells[c * per_cell];
     const auto measure = [&] {
       std::array<double, 2> low_high{1e300, -1e300};
-      for (int k = 0; k < corners; ++k) {
-        const double J = corner_jacobian(mesh, cell, k);
+      for (const Corner& corner : corners) {
+        const double J = corner_jacobian(mesh, cell, corner);
         low_high = {std::min(low_high[0], J), std::max(low_high[1], J)};
       }
       return low_high;

@@ -48,11 +48,13 @@ Mat3 tangent_projector(const Mesh& mesh, const Entity& entity,
   return Mat3::Identity() - normal * normal.transpose();
 }
 
-/// Nodes on each entity and its closure, as points.
+/// Nodes on each entity of the surface and its closure, as points.
 std::vector<std::vector<Vec3>> closure_points(const Mesh& mesh) {
   std::vector<std::vector<Vec3>> own(mesh.entities.size());
-  for (std::size_t a = 0; a < mesh.nodes.size(); ++a)
-    own[static_cast<std::size_t>(mesh.node_entity[a])].push_back(mesh.nodes[a]);
+  for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
+    const auto e = static_cast<std::size_t>(mesh.node_entity[a]);
+    if (mesh.entities[e].dim < mesh.dim) own[e].push_back(mesh.nodes[a]);
+  }
   std::vector<std::vector<Vec3>> all = own;
   for (std::size_t e = 0; e < all.size(); ++e) {
     if (mesh.entities[e].dim == mesh.dim) continue;

@@ -1,101 +1,195 @@
 #include "particle/core/body.hpp"
 
+#include "particle/core/body_cache.hpp"
+#include "scene/mesh_parts.hpp"
+
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <numeric>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace concord::particle {
 namespace {
 
-/// Numbers of the nodes in sweep order.
-std::vector<Index> sweep_order(const scene::Mesh& mesh) {
+/// Axes of the mesh, longest first.
+std::array<int, 3> axes_by_length(const scene::Mesh& mesh, const Vec3& size) {
+  std::array<int, 3> axis{0, 1, 2};
+  std::stable_sort(axis.begin(), axis.begin() + mesh.dim,
+                   [&](int i, int j) { return size[i] > 1.0001 * size[j]; });
+  return axis;
+}
+
+/// Numbers of the nodes in sweep order: counted into rows of thickness about h, rows sorted by
+/// place.
+std::vector<Index> sweep_order(const scene::Mesh& mesh, const Executor& executor) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (const Vec3& X : mesh.nodes) {
     low = low.cwiseMin(X);
     high = high.cwiseMax(X);
   }
-  std::array<int, 3> axis{0, 1, 2};  // longest first
-  std::stable_sort(axis.begin(), axis.begin() + mesh.dim, [&](int i, int j) {
-    return high[i] - low[i] > 1.0001 * (high[j] - low[j]);
-  });
-  struct Key {
-    long slab, row;
-    double place;
-    Index node;
+  const std::array<int, 3> axis = axes_by_length(mesh, high - low);
+  const auto layer = [&](int i, const Vec3& X) {
+    return static_cast<std::size_t>(std::lround((X[axis[i]] - low[axis[i]]) / mesh.h));
   };
-  std::vector<Key> keys;
-  keys.reserve(mesh.nodes.size());
-  for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
-    const Vec3 X = mesh.nodes[a] - low;
-    const auto cell = [&](int i) { return std::lround(X[axis[i]] / mesh.h); };
-    keys.push_back(
-        {cell(0), mesh.dim == 3 ? cell(1) : 0, X[axis[mesh.dim - 1]], static_cast<Index>(a)});
-  }
-  std::sort(keys.begin(), keys.end(), [](const Key& p, const Key& q) {
-    return std::tie(p.slab, p.row, p.place, p.node) < std::tie(q.slab, q.row, q.place, q.node);
+  const std::size_t per_slab = mesh.dim == 3 ? layer(1, high) + 1 : 1;
+  const auto row_of = [&](std::size_t a) {
+    const Vec3& X = mesh.nodes[a];
+    return layer(0, X) * per_slab + (mesh.dim == 3 ? layer(1, X) : 0);
+  };
+  std::vector<Index> begin((layer(0, high) + 1) * per_slab + 1, 0), order(mesh.nodes.size());
+  for (std::size_t a = 0; a < order.size(); ++a) ++begin[row_of(a) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Index> next(begin.begin(), begin.end() - 1);
+  for (std::size_t a = 0; a < order.size(); ++a)
+    order[next[row_of(a)]++] = static_cast<Index>(a);
+  const int along = axis[mesh.dim - 1];
+  constexpr std::size_t rows_at_once = 256;
+  executor.for_each((next.size() + rows_at_once - 1) / rows_at_once, [&](std::size_t k) {
+    const std::size_t last = std::min(next.size(), (k + 1) * rows_at_once);
+    for (std::size_t row = k * rows_at_once; row < last; ++row) {
+      std::sort(order.begin() + begin[row], order.begin() + begin[row + 1],
+                [&](Index a, Index b) {
+                  const double X_a = mesh.nodes[a][along], X_b = mesh.nodes[b][along];
+                  return X_a < X_b || (X_a == X_b && a < b);
+                });
+    }
   });
-  std::vector<Index> order;
-  order.reserve(keys.size());
-  for (const Key& k : keys) order.push_back(k.node);
   return order;
 }
 
-void renumber(Triangulation& t, const std::vector<Index>& particle) {
-  for (Index& v : t.simplices) v = particle[v];
-  for (Index& v : t.boundary) v = particle[v];
-  std::vector<char> on(t.on_boundary.size());
-  for (std::size_t a = 0; a < on.size(); ++a) on[particle[a]] = t.on_boundary[a];
-  t.on_boundary = std::move(on);
+/// V_a and the shortest edge, from the triangulation.
+void measure(Body& body, const Executor& executor) {
+  const Triangulation& t = body.triangulation;
+  const int nv = t.dim + 1;
+  body.V.assign(body.n, 0.0);
+  for (std::size_t s = 0; s < t.size(); ++s) {
+    const double share = body.simplex_volume(s) * body.thickness / nv;
+    for (int i = 0; i < nv; ++i) body.V[t.simplices[s * nv + i]] += share;
+  }
+  std::vector<double> shortest(Executor::pieces(t.size()), 1e300);  // squared
+  executor.for_pieces(t.size(), [&](std::size_t begin, std::size_t end) {
+    double least = 1e300;
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index* v = &t.simplices[s * nv];
+      for (int i = 0; i < nv; ++i) {
+        for (int j = 0; j < i; ++j)
+          least = std::min(least, (body.position(v[i]) - body.position(v[j])).squaredNorm());
+      }
+    }
+    shortest[begin / Executor::piece] = least;
+  });
+  body.h_min = 1e300;
+  for (const double least : shortest) body.h_min = std::min(body.h_min, std::sqrt(least));
 }
 
-}  // namespace
+/// The particles' arrangement. Only its nodes and surface matter to Delaunay cells; hexahedra
+/// give a lattice's with a sixth of the elements. A lattice that gmsh cannot fill with them
+/// comes as simplices.
+scene::Mesh arrangement(const scene::Problem& problem, double h, CellSource cells) {
+  scene::MeshRequest request;
+  request.h = h;
+  request.layout = problem.layout;
+  if (cells == CellSource::mesh || problem.layout != scene::Layout::lattice ||
+      problem.dim() == 2)
+    return scene::make_mesh(problem, request);
+  request.shape = scene::CellShape::hypercube;
+  try {
+    return scene::make_mesh(problem, request);
+  } catch (const InputError&) {
+    request.shape = scene::CellShape::simplex;
+    return scene::make_mesh(problem, request);
+  }
+}
 
-Body make_body(const scene::Problem& problem, scene::Mesh mesh, CellSource cells) {
-  Body body;
+/// Gives memory that was set free back to the system: gmsh's many small pieces would stay, and
+/// columns too once the threshold above which glibc maps pages for them has risen.
+void return_free_memory() {
+#ifdef __GLIBC__
+  constexpr int mapped_above = 1 << 18;  // bytes; all columns of bodies that need much
+  mallopt(M_MMAP_THRESHOLD, mapped_above);
+  malloc_trim(0);
+#endif
+}
+
+/// Everything that follows from mesh, node order and triangulation.
+void complete(const scene::Problem& problem, Body& body, const Executor& executor) {
+  const scene::Mesh& mesh = body.mesh;
   body.dim = mesh.dim;
   body.stride = stride_of(mesh.dim);
   body.n = static_cast<Index>(mesh.nodes.size());
   body.h = mesh.h;
   body.thickness = problem.thickness;
-  body.triangulation = cells == CellSource::delaunay ? triangulate(mesh, problem)
-                                                     : mesh_triangulation(mesh, problem);
-  body.node = sweep_order(mesh);
   body.particle.resize(body.n);
   for (Index a = 0; a < body.n; ++a) body.particle[body.node[a]] = a;
-  renumber(body.triangulation, body.particle);
-
   body.X.assign(static_cast<std::size_t>(body.n) * body.stride, 0.0);
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0; i < body.dim; ++i)
-      body.X[a * body.stride + i] = mesh.nodes[body.node[a]][i];
+      body.X[static_cast<std::size_t>(a) * body.stride + i] = mesh.nodes[body.node[a]][i];
   }
-  body.V.assign(body.n, 0.0);
-  body.h_min = 1e300;
-  const Triangulation& t = body.triangulation;
-  const int nv = t.dim + 1;
-  for (std::size_t s = 0; s < t.size(); ++s) {
-    const Index* v = &t.simplices[s * nv];
-    for (int i = 0; i < nv; ++i) {
-      body.V[v[i]] += t.volume[s] * problem.thickness / nv;
-      for (int j = 0; j < i; ++j) {
-        body.h_min = std::min(body.h_min, (body.position(v[i]) - body.position(v[j])).norm());
-      }
-    }
-  }
+  measure(body, executor);
   body.m.resize(body.n);
   for (Index a = 0; a < body.n; ++a) body.m[a] = problem.material.rho0 * body.V[a];
+}
+
+/// Node order and triangulation.
+void divide(const scene::Problem& problem, CellSource cells, Body& body,
+            const Executor& executor) {
+  body.node = sweep_order(body.mesh, executor);
+  std::vector<Index> particle(body.node.size());
+  for (std::size_t a = 0; a < particle.size(); ++a)
+    particle[body.node[a]] = static_cast<Index>(a);
+  body.triangulation = cells == CellSource::delaunay
+                           ? triangulate(body.mesh, problem, particle, executor)
+                           : mesh_triangulation(body.mesh, problem, particle);
+  std::vector<double>().swap(body.triangulation.volume);  // = {} would keep its memory
+}
+
+}  // namespace
+
+Body make_body(const scene::Problem& problem, scene::Mesh mesh, CellSource cells,
+               const Executor& executor) {
+  Body body;
   body.mesh = std::move(mesh);
+  divide(problem, cells, body, executor);
+  complete(problem, body, executor);
   return body;
 }
 
 Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed,
-               CellSource cells) {
-  scene::MeshRequest request;
-  request.h = h;
-  request.layout = problem.layout;
-  scene::Mesh mesh = scene::make_mesh(problem, request);
-  if (perturb > 0) scene::perturb(mesh, problem, perturb, seed);
-  return make_body(problem, std::move(mesh), cells);
+               CellSource cells, const Executor& executor) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const auto cache = BodyCache::from_environment();
+  const std::string key = cache ? cache->key(problem, {h, perturb, seed, cells}) : "";
+  Body body;
+  double made_s = 0;
+  if (!key.empty() && cache->fetch(key, body, made_s)) {
+    scene::check_groups(body.mesh, problem);  // the scene's conditions are not in the key
+    complete(problem, body, executor);
+    body.saved_s = std::max(0.0, made_s - seconds());
+    return body;
+  }
+  body.mesh = arrangement(problem, h, cells);
+  if (cells == CellSource::delaunay) std::vector<Index>().swap(body.mesh.cells);
+  return_free_memory();
+  if (perturb > 0) scene::perturb(body.mesh, problem, perturb, seed);
+  divide(problem, cells, body, executor);
+  return_free_memory();
+  complete(problem, body, executor);
+  if (!key.empty() && seconds() > BodyCache::worthwhile_s) cache->store(key, body, seconds());
+  return body;
+}
+
+double Body::simplex_volume(std::size_t s) const {
+  std::array<Vec3, 4> P, g;
+  for (int k = 0; k <= dim; ++k) P[k] = position(triangulation.simplices[s * (dim + 1) + k]);
+  return std::abs(volume_gradients(dim, P, g));
 }
 
 std::vector<Index> fixed_blocks(Index n) {

@@ -26,14 +26,18 @@ struct Body {
   std::vector<double> m;        ///< rho0 V_a [kg]
   std::vector<Index> node;      ///< mesh node of each particle
   std::vector<Index> particle;  ///< particle of each mesh node
-  Triangulation triangulation;  ///< vertices renumbered to particles
-  scene::Mesh mesh;             ///< gmsh's mesh, with groups (node numbers)
+  Triangulation triangulation;  ///< vertices are particles; without volumes
+  scene::Mesh mesh;             ///< gmsh's mesh, with groups (node numbers); cells may be gone
+
+  double saved_s = 0;  ///< time that a cache spared: what making the body took, less reading it
 
   Vec3 position(Index a) const {
     Vec3 r = Vec3::Zero();
     for (int i = 0; i < dim; ++i) r[i] = X[static_cast<std::size_t>(a) * stride + i];
     return r;
   }
+  /// |t| of a simplex [m^dim].
+  double simplex_volume(std::size_t s) const;
 };
 
 /// Where the simplices between the particles come from.
@@ -42,14 +46,16 @@ enum class CellSource {
   mesh       ///< the cells of gmsh's mesh
 };
 
-/// Meshes the geometry at spacing h, perturbs, triangulates and sorts. Throws InputError
+/// Meshes the geometry at spacing h, perturbs, triangulates and sorts; the same body for every
+/// number of threads. Its mesh has no cells where the triangulation is Delaunay's. Bodies that
+/// take long come from $CONCORD_CACHE if that is set (body_cache.hpp). Throws InputError
 /// (geometry cannot be filled).
 Body make_body(const scene::Problem& problem, double h, double perturb, std::uint64_t seed,
-               CellSource cells = CellSource::delaunay);
+               CellSource cells = CellSource::delaunay, const Executor& executor = Executor(1));
 
 /// The same from a mesh that is there already (tests, benchmarks).
 Body make_body(const scene::Problem& problem, scene::Mesh mesh,
-               CellSource cells = CellSource::delaunay);
+               CellSource cells = CellSource::delaunay, const Executor& executor = Executor(1));
 
 /// Contiguous ranges of particles, the same for every number of threads: block k is [begin[k],
 /// begin[k+1]). About 16384 particles each, at most 16 blocks.

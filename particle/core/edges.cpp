@@ -37,15 +37,16 @@ Edges make_edges(const Body& body) {
     row.clear();
     for (std::size_t k = around.begin[a]; k < around.begin[a + 1]; ++k) {
       const Index s = around.simplex[k];
+      const double V_s = body.simplex_volume(static_cast<std::size_t>(s));
       for (int v = 0; v < vertices; ++v) {
         const Index b = t.simplices[static_cast<std::size_t>(s) * vertices + v];
         if (b <= a) continue;
         const auto known =
             std::find_if(row.begin(), row.end(), [b](const auto& e) { return e.first == b; });
         if (known == row.end())
-          row.emplace_back(b, share * t.volume[s]);
+          row.emplace_back(b, share * V_s);
         else
-          known->second += share * t.volume[s];
+          known->second += share * V_s;
       }
     }
     std::sort(row.begin(), row.end());

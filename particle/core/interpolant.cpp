@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace concord::particle {
 
-ParticleField::ParticleField(const Body& body, std::vector<Vec3> u, std::vector<Mat3> H)
-    : m_dim(body.dim), m_simplices(body.triangulation.simplices), m_u(std::move(u)),
-      m_H(std::move(H)) {
+ParticleField::ParticleField(Body& body, std::vector<Vec3> X, std::vector<Vec3> u,
+                             std::vector<Mat3> H)
+    : m_dim(body.dim), m_simplices(std::exchange(body.triangulation.simplices, {})),
+      m_X(std::move(X)), m_u(std::move(u)), m_H(std::move(H)) {
   Vec3 high = Vec3::Constant(-1e300);
   m_low = Vec3::Constant(1e300);
-  for (Index a = 0; a < body.n; ++a) {
-    m_X.push_back(body.position(a));
-    m_low = m_low.cwiseMin(m_X.back());
-    high = high.cwiseMax(m_X.back());
+  for (const Vec3& x : m_X) {
+    m_low = m_low.cwiseMin(x);
+    high = high.cwiseMax(x);
   }
   m_cell = body.h;
   for (int i = 0; i < m_dim; ++i)

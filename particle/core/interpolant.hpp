@@ -15,7 +15,8 @@ namespace concord::particle {
 /// adds no second-order error where they are accurate. The gradient is that of this function.
 class ParticleField final : public scene::Field {
  public:
-  ParticleField(const Body& body, std::vector<Vec3> u, std::vector<Mat3> H);
+  /// Takes the body's simplices: they are gone from it afterwards. X, u, H: one a particle.
+  ParticleField(Body& body, std::vector<Vec3> X, std::vector<Vec3> u, std::vector<Mat3> H);
   void evaluate(std::span<const Vec3> X, std::span<Vec3> u,
                 std::span<Mat3> gradient) const override;
 

@@ -43,9 +43,6 @@ struct Run {
     for (const auto& [name, value] : recorder.quantities(state))
       result.quantities[name] = value;
     result.samples = recorder.samples(state);
-    std::vector<Mat3> H;
-    for (const Mat3& F : result.samples.F) H.push_back(F - Mat3::Identity());
-    result.field = std::make_shared<ParticleField>(body, result.samples.u, H);
     recorder.add_hourglass(result);
   }
 
@@ -93,7 +90,7 @@ struct Run {
       result.dt = outcome.dt;
       result.wall_s = outcome.loop_s;
       finish(integrator.state());
-      recorder.add_invariants(result);
+      recorder.add_invariants(result, options.damping > 0);
     };
     try {
       integrator.run(options, recorder, outcome);
@@ -169,14 +166,54 @@ CellSource ParticleMethod::cells(const scene::Settings&) const { return CellSour
 
 void ParticleMethod::divide(Body&, const scene::Problem&, const scene::Settings&) const {}
 
+namespace {
+
+/// Settings that contradict the scene or each other. Throws InputError.
+void check_solver(const std::string& method, const scene::Problem& problem,
+                  const scene::Settings& settings, bool viscous) {
+  const std::string& solver = settings.word("solver");
+  const auto reject = [&](const std::string& key, const std::string& found,
+                          const std::string& allowed) {
+    throw InputError({problem.file.string(), 0, 0}, method + key, found, allowed);
+  };
+  if (solver == "static" && !problem.is_static)
+    reject(".solver", "static", "auto or explicit for a scene with an end_time");
+  if (settings.number("duration") > 0 && !(problem.is_static && solver == "explicit")) {
+    reject(".duration", solver + " solver, or a scene with an end_time",
+           "solver = explicit on a static scene");
+  }
+  if (problem.is_static && solver == "explicit" && problem.material.plastic() &&
+      !(settings.number("duration") > 0)) {
+    reject(".duration", "0",
+           "above 0 for a plastic material: damped vibrations would leave plastic strains that "
+           "the load did not make");
+  }
+  if (problem.is_static && solver != "explicit" && viscous) {
+    reject("", "artificial viscosity on a static solve",
+           "viscosity 0, or solver = explicit (damped dynamics)");
+  }
+}
+
+/// The displacement between the particles, from what the run's end left. Comes last, when the
+/// model's memory is free again.
+std::shared_ptr<const scene::Field> field_of(Body& body, const scene::Samples& samples) {
+  std::vector<Mat3> H;
+  H.reserve(samples.F.size());
+  for (const Mat3& F : samples.F) H.push_back(F - Mat3::Identity());
+  return std::make_shared<ParticleField>(body, samples.X, samples.u, std::move(H));
+}
+
+}  // namespace
+
 void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
                          scene::Result& result) const {
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
-  Body body = make_body(problem, request.h, request.perturb, request.seed, cells(settings));
+  Body body =
+      make_body(problem, request.h, request.perturb, request.seed, cells(settings), executor);
   divide(body, problem, settings);
-  const std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
+  std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, body);
   const bool dissipative = model->viscous() || damped(problem, settings);
@@ -186,35 +223,26 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   result.particles = body.n;
   result.unknowns = constraints.unknowns();
   result.threads = executor.threads();
-  result.setup_s = seconds_since(begin);
+  // Set-up is told as it is without a cache.
+  result.setup_s = seconds_since(begin) + body.saved_s;
+  if (body.saved_s > 0) result.notes["body"] = "from the cache";
+  check_solver(m_info.name, problem, settings, model->viscous());
   Run run{problem,     request, settings, body,     *model,
           constraints, loads,   executor, recorder, result};
-  const std::string& solver = settings.word("solver");
-  if (solver == "static" && !problem.is_static) {
-    throw InputError({problem.file.string(), 0, 0}, m_info.name + ".solver", "static",
-                     "auto or explicit for a scene with an end_time");
+  const auto complete = [&] {
+    model.reset();
+    if (!result.samples.u.empty()) result.field = field_of(body, result.samples);
+  };
+  try {
+    if (problem.is_static && settings.word("solver") != "explicit")
+      run.statics();
+    else
+      run.dynamics();
+  } catch (...) {
+    complete();
+    throw;
   }
-  if (settings.number("duration") > 0 && !(problem.is_static && solver == "explicit")) {
-    throw InputError({problem.file.string(), 0, 0}, m_info.name + ".duration",
-                     settings.word("solver") + " solver, or a scene with an end_time",
-                     "solver = explicit on a static scene");
-  }
-  if (problem.is_static && solver == "explicit" && problem.material.plastic() &&
-      !(settings.number("duration") > 0)) {
-    throw InputError({problem.file.string(), 0, 0}, m_info.name + ".duration", "0",
-                     "above 0 for a plastic material: damped vibrations would leave plastic "
-                     "strains that the load did not make");
-  }
-  if (problem.is_static && solver != "explicit") {
-    if (model->viscous()) {
-      throw InputError({problem.file.string(), 0, 0}, m_info.name,
-                       "artificial viscosity on a static solve",
-                       "viscosity 0, or solver = explicit (damped dynamics)");
-    }
-    run.statics();
-  } else {
-    run.dynamics();
-  }
+  complete();
 }
 
 }  // namespace concord::particle

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 
 namespace concord::particle {
@@ -39,41 +40,46 @@ SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints
   const Body& body = model.body();
   m_root.resize(body.n);
   for (Index a = 0; a < body.n; ++a) m_root[a] = std::sqrt(body.m[a]);
-  m_start.assign(body.X.size(), 0.0);
+}
+
+Column SpectralRadius::start() const {
+  const Body& body = m_model.body();
+  Column w(body.X.size(), 0.0);
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0; i < body.dim; ++i) {
-      m_start[static_cast<std::size_t>(a) * body.stride + i] =
+      w[static_cast<std::size_t>(a) * body.stride + i] =
           scene::uniform_random(12345, a, i) - 0.5;
     }
   }
+  return w;
 }
 
 void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& result) {
   const Body& body = m_model.body();
-  double largest = 0;
-  for (Index a = 0; a < body.n; ++a) {
-    for (int i = 0; i < body.dim; ++i) {
-      largest = std::max(largest, std::abs(w[static_cast<std::size_t>(a) * body.stride + i]) /
-                                      m_root[a]);
+  const auto stride = static_cast<std::size_t>(body.stride);
+  std::vector<double> largest_of(Executor::pieces(m_root.size()), 0.0);
+  m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
+    double& largest = largest_of[begin / Executor::piece];
+    for (std::size_t a = begin; a < end; ++a) {
+      for (int i = 0; i < body.dim; ++i)
+        largest = std::max(largest, std::abs(w[a * stride + i]) / m_root[a]);
     }
-  }
+  });
+  const double largest = *std::max_element(largest_of.begin(), largest_of.end());
   const double epsilon =
       1e-6 * body.h_min / largest;  // displacements of 1e-6 spacings: error about 1e-8 relative
   for (const double sign : {1.0, -1.0}) {
-    for (Index a = 0; a < body.n; ++a) {
-      for (int i = 0; i < body.stride; ++i) {
-        const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
-        m_shifted[k] = u[k] + sign * epsilon * w[k] / m_root[a];
-      }
-    }
+    m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin * stride; k < end * stride; ++k)
+        m_shifted[k] = u[k] + sign * epsilon * w[k] / m_root[k / stride];
+    });
     m_model.forces(m_shifted, m_velocity, m_force, m_executor);
-    for (Index a = 0; a < body.n; ++a) {
-      const double factor = -sign / (2 * epsilon * m_root[a]);
-      for (int i = 0; i < body.stride; ++i) {
-        const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
+    m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin * stride; k < end * stride; ++k) {
+        const double factor = -sign / (2 * epsilon * m_root[k / stride]);
         result[k] = (sign > 0 ? 0.0 : result[k]) + factor * m_force[k];
       }
-    }
+    });
   }
   m_constraints.clear(result);
 }
@@ -83,8 +89,8 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
   const std::size_t size = u.size();
   m_shifted.assign(size, 0.0);
   m_force.assign(size, 0.0);
-  m_velocity.assign(size, 0.0);
-  Column previous(size, 0.0), current = m_start, next(size, 0.0);
+  m_velocity.assign(m_model.viscous() ? size : 0, 0.0);  // else not read
+  Column previous(size, 0.0), current = start(), next(size, 0.0);
   m_constraints.clear(current);
   const double norm = std::sqrt(dot(current, current, m_executor));
   if (norm == 0) return 0;
@@ -94,8 +100,10 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
     apply(u, current, next);
     const double alpha = dot(current, next, m_executor);
     const double beta_before = off_diagonal.empty() ? 0.0 : off_diagonal.back();
-    for (std::size_t k = 0; k < size; ++k)
-      next[k] -= alpha * current[k] + beta_before * previous[k];
+    m_executor.for_pieces(size, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k)
+        next[k] -= alpha * current[k] + beta_before * previous[k];
+    });
     diagonal.push_back(alpha);
     const auto count = static_cast<Eigen::Index>(diagonal.size());
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
@@ -114,32 +122,6 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
     scale(current, 1 / beta);
   }
   return std::sqrt(std::max(0.0, estimates.back()));
-}
-
-std::vector<double> SpectralRadius::row_norms(std::span<const double> u, int probes) {
-  const ElasticResponse elastic(m_model);
-  const Body& body = m_model.body();
-  Column w(u.size(), 0.0), Aw(u.size(), 0.0);
-  m_shifted = m_force = m_velocity = w;
-  std::vector<double> squares(body.n, 0.0);
-  for (int p = 0; p < probes; ++p) {
-    for (Index a = 0; a < body.n; ++a) {
-      for (int i = 0; i < body.dim; ++i) {
-        const double sign = scene::uniform_random(4711 + p, a, i) < 0.5 ? -1 : 1;
-        w[static_cast<std::size_t>(a) * body.stride + i] = sign;
-      }
-    }
-    m_constraints.clear(w);
-    apply(u, w, Aw);
-    for (Index a = 0; a < body.n; ++a) {
-      for (int i = 0; i < body.dim; ++i) {
-        const double x = Aw[static_cast<std::size_t>(a) * body.stride + i];
-        squares[a] += x * x;
-      }
-    }
-  }
-  for (double& s : squares) s = std::sqrt(s / (probes * body.dim));
-  return squares;
 }
 
 }  // namespace concord::particle

@@ -19,19 +19,15 @@ class SpectralRadius {
   /// iterations (two force evaluations each).
   double omega_max(std::span<const double> u, double tolerance = 2e-3, int most = 60);
 
-  /// Of every particle the norm of its rows of A = M^-1/2 K M^-1/2 at u, root mean square over
-  /// its components [1/s^2]: r_a^2 = mean_i sum_bj A_ai,bj^2, estimated as the mean of (A
-  /// w)_ai^2 over `probes` random vectors w of +-1. Prescribed components have empty rows.
-  std::vector<double> row_norms(std::span<const double> u, int probes);
-
  private:
+  Column start() const;  ///< the same random vector for every number of threads
   void apply(std::span<const double> u, const Column& w, Column& result);
 
   ForceModel& m_model;
   const Constraints& m_constraints;
   const Executor& m_executor;
   std::vector<double> m_root;  ///< sqrt(m_a)
-  Column m_start, m_shifted, m_force, m_velocity;
+  Column m_shifted, m_force, m_velocity;
 };
 
 }  // namespace concord::particle

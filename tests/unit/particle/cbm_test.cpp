@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include <map>
 #include <random>
 
@@ -29,13 +31,13 @@ struct BondVectors {
       for (int k = 0; k < 3; ++k) {
         const Index i = t.simplices[3 * s + k], alpha = t.simplices[3 * s + (k + 1) % 3],
                     beta = t.simplices[3 * s + (k + 2) % 3];
-        Omega[i] += t.volume[s] / 3;  // (1)
+        Omega[i] += body.simplex_volume(s) / 3;  // (1)
         const Vec2 X_a = (body.position(alpha) - body.position(i)).head<2>(),
                    X_b = (body.position(beta) - body.position(i)).head<2>();
         const Mat2 X = X_a * X_a.transpose() + X_b * X_b.transpose();  // (5)
         for (const auto& [p, X_ip] : {std::pair{alpha, X_a}, std::pair{beta, X_b}}) {
           Vec2& sum = zeta.try_emplace({i, p}, Vec2::Zero()).first->second;
-          sum += t.volume[s] / 3 * (X.inverse() * X_ip);  // (7), (9)
+          sum += body.simplex_volume(s) / 3 * (X.inverse() * X_ip);  // (7), (9)
         }
       }
     }
@@ -139,7 +141,9 @@ TEST(MeshTriangulation, RefusesInvertedCells) {
   request.layout = problem.layout;
   scene::Mesh mesh = scene::make_mesh(problem, request);
   std::swap(mesh.cells[0], mesh.cells[1]);
-  EXPECT_THROW((void)mesh_triangulation(mesh, problem), InputError);
+  std::vector<Index> number(mesh.nodes.size());
+  std::iota(number.begin(), number.end(), 0);
+  EXPECT_THROW((void)mesh_triangulation(mesh, problem, number), InputError);
 }
 
 }  // namespace
