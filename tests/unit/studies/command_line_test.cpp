@@ -271,3 +271,49 @@ TEST_F(Program, CtrlCInAStudyStopsItsRunsAndKeepsTheFinished) {
   EXPECT_TRUE(study["interrupted"].get<bool>());
   EXPECT_EQ(study["rows"].size(), 1u);
 }
+
+TEST_F(Program, RepeatedRunsAreTimedByTheirMedian) {
+  const Ended ended = run("run swinging_cube --method delaunay --resolution 4 --repeats 3 "
+                          "--no-frames --out r");
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const json s = summary("r");
+  EXPECT_EQ(s["repeats"], 3);
+  for (const std::string name : {"setup_s", "wall_s"}) {
+    const json& quartiles = s[name + "_quartiles"];
+    EXPECT_LE(quartiles.at(0), s[name]) << name;
+    EXPECT_LE(s[name], quartiles.at(1)) << name;
+    EXPECT_GT(quartiles.at(0).get<double>(), 0) << name;
+  }
+  EXPECT_TRUE(s["errors"].contains("displacement_l2")) << "of the run with output";
+  EXPECT_TRUE(fs::exists(m_work / "r" / "history.csv"));
+  expect_bad_input("run swinging_cube --method delaunay --repeats -1", "--repeats");
+}
+
+TEST_F(Program, AProbeIsACaseLikeARun) {
+  const std::string environment = home_with_study(
+      head +
+      "[[case]]\nscene = \"spinning_block\"\nmethod = \"delaunay\"\nresolutions = [2]\n" +
+      "probe = \"spectrum\"\noptions = { reference = 0, low = 5 }\n" +
+      "[[claim]]\nid = \"c\"\nstatement = \"s\"\nsource = \"s\"\nkind = \"value\"\n" +
+      "quantity = \"quantities.zero_modes\"\nmin = 6\nmax = 6\n" +
+      "[[heatmap]]\ncolumns = [{ label = \"D\", method = \"delaunay\" }]\n" +
+      "rows = [{ label = \"z\", probe = \"spectrum\", quantity = \"quantities.zero_modes\", " +
+      "good = 6, bad = 7 }]\n");
+  const Ended first = run("study s --out o", environment);
+  ASSERT_EQ(first.code, 0) << first.out << first.err;
+  EXPECT_NE(first.out.find("1 runs computed"), std::string::npos) << first.out;
+  const json study = json::parse(read(m_work / "o" / "study.json"));
+  const json& row = study["rows"].at(0);
+  EXPECT_EQ(row["probe"], "spectrum");
+  EXPECT_EQ(row["options"]["low"], "5");
+  const json& cell = study["heatmap"].at(0)["rows"].at(0)["cells"].at(0);
+  EXPECT_EQ(cell["score"], 1);
+  EXPECT_TRUE(fs::exists(m_work / "o" / cell["run"].get<std::string>() / "summary.json"));
+  // The command of the cell gives the number again.
+  const std::string command = cell["command"].get<std::string>();
+  ASSERT_TRUE(command.starts_with("./concord probe spectrum spinning_block")) << command;
+  ASSERT_EQ(run(command.substr(std::string("./concord ").size()) + " --out p").code, 0);
+  EXPECT_EQ(summary("p")["quantities"]["zero_modes"], 6);
+  const Ended second = run("study s --out o", environment);
+  EXPECT_NE(second.out.find("0 runs computed, 1 from the cache"), std::string::npos);
+}
