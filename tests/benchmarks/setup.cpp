@@ -24,6 +24,7 @@ scene::MeshRequest request_of(const benchmark::State& state) {
   scene::MeshRequest request;
   request.h = 1.0 / (static_cast<double>(state.range(0)) - 1);
   request.layout = cube().layout;
+  request.shape = scene::CellShape::hypercube;  // as bodies ask for lattices
   return request;
 }
 
