@@ -165,6 +165,7 @@ Body make_body(const scene::Problem& problem, double h, double perturb, std::uin
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
+  return_free_memory();
   const auto cache = BodyCache::from_environment();
   const std::string key = cache ? cache->key(problem, {h, perturb, seed, cells}) : "";
   Body body;
