@@ -89,8 +89,8 @@ Point(5) = {2, 1.5, 0, h}; Point(6) = {1, 1.5, 0, h}; Point(7) = {1, 3, 0, h}; P
 For k In {1:8}
   Line(k) = {k, k % 8 + 1};
 EndFor
-Point(20) = {1.5, 0.75, 0}; Point(21) = {1.9, 0.75, 0, h / 2}; Point(22) = {1.5, 1.15, 0, h / 2};
-Point(23) = {1.1, 0.75, 0, h / 2}; Point(24) = {1.5, 0.35, 0, h / 2};
+Point(20) = {1.5, 0.75, 0}; Point(21) = {1.9, 0.75, 0, h}; Point(22) = {1.5, 1.15, 0, h};
+Point(23) = {1.1, 0.75, 0, h}; Point(24) = {1.5, 0.35, 0, h};
 Circle(21) = {21, 20, 22}; Circle(22) = {22, 20, 23}; Circle(23) = {23, 20, 24}; Circle(24) = {24, 20, 21};
 Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7, 8}; Curve Loop(2) = {21, 22, 23, 24};
 Plane Surface(1) = {1, 2};
@@ -98,10 +98,10 @@ out[] = Extrude {0, 0, 0.6} { Surface{1}; };
 Physical Volume("body") = {out[1]};
 )";
   const scene::Problem problem = problem_on(geo, "3D");
-  const Body body = make_body(problem, 0.2, 0.1, 4);
+  const Body body = make_body(problem, 0.2, 0.05, 4);
   const double expected = (9 - 1.5 - M_PI * 0.16) * 0.6;  // less what the chords cut off: 2 %
   EXPECT_NEAR(volume(body), expected, 0.02 * expected);
-  const Body threaded = make_body(problem, 0.2, 0.1, 4, CellSource::delaunay, Executor(3));
+  const Body threaded = make_body(problem, 0.2, 0.05, 4, CellSource::delaunay, Executor(3));
   EXPECT_EQ(threaded.triangulation.simplices, body.triangulation.simplices);
   EXPECT_EQ(threaded.triangulation.boundary, body.triangulation.boundary);
   EXPECT_EQ(threaded.V, body.V);
