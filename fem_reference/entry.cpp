@@ -95,19 +95,12 @@ void run(const scene::Problem& problem, const scene::RunRequest& request,
                  material.elastic ? &*material.elastic : nullptr,
                  material.points ? &*material.points : nullptr,
                  started};
-  try {
-    if (options.solver == Solver::statics)
-      run_statics(parts);
-    else if (options.solver == Solver::newmark)
-      run_newmark(parts);
-    else
-      run_explicit(parts);
-  } catch (const InputError&) {
-    throw;
-  } catch (...) {
-    observer.finish(state, false);
-    throw;
-  }
+  if (options.solver == Solver::statics)
+    run_statics(parts);
+  else if (options.solver == Solver::newmark)
+    run_newmark(parts);
+  else
+    run_explicit(parts);
 }
 
 }  // namespace

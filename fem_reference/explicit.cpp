@@ -79,65 +79,68 @@ template <int dim> void run_explicit(Run<dim>& run) {
     y.scale(mass);
   };
   run.observer.connect(*force, mass_product);
-  const Motion<dim> motion(run);
-  Spectrum spectrum(
-      *force, mass, [&](unsigned dof) { return run.prescribed.is_given(dof); },
-      run.discretisation.smallest_cell());
-  impose(run.prescribed, 0, state.u);
-  check(state, force->force(state.u, state.internal));
-  run.loads.evaluate(0, state.external);
-
-  const double end = run.problem.end_time;
-  const auto stable_step = [&](int least, int most) {
-    const double omega = spectrum.omega(state.u, state.internal, least, most);
-    return omega > 0 ? 2 / omega : end;
-  };
-  const bool chosen = run.options.dt > 0;
-  double dt =
-      chosen ? run.options.dt : run.options.dt_factor * stable_step(first_least, first_most);
-  dt = whole_steps(end, std::min(dt, end));
-  accelerate(state, mass);
-  motion.impose_rates(state, dt);
-  Vector work_force, last_force, last_u;
-  const bool given_moves = run.prescribed.depends_on_time();
-  const bool works = run.loads.any() || given_moves;
-  working_force(run, mass_product, work_force);
-  run.observer.start(state);
-  run.result.setup_s = now() - run.started;
-
-  const double loop_started = now(), observed = run.observer.seconds();
-  while (state.t < end * (1 - 1e-12)) {
-    if (works) {
-      last_u = state.u;
-      last_force = work_force;
-    }
-    kick_and_drift(state, dt);
-    ++state.step;
-    state.t += dt;
-    motion.impose_positions(state);
+  keep_what_was_reached(run, [&] {
+    const Motion<dim> motion(run);
+    Spectrum spectrum(
+        *force, mass, [&](unsigned dof) { return run.prescribed.is_given(dof); },
+        run.discretisation.smallest_cell());
+    impose(run.prescribed, 0, state.u);
     check(state, force->force(state.u, state.internal));
-    if (run.loads.depends_on_time()) run.loads.evaluate(state.t, state.external);
+    run.loads.evaluate(0, state.external);
+
+    const double end = run.problem.end_time;
+    const auto stable_step = [&](int least, int most) {
+      const double omega = spectrum.omega(state.u, state.internal, least, most);
+      return omega > 0 ? 2 / omega : end;
+    };
+    const bool chosen = run.options.dt > 0;
+    double dt =
+        chosen ? run.options.dt : run.options.dt_factor * stable_step(first_least, first_most);
+    dt = whole_steps(end, std::min(dt, end));
     accelerate(state, mass);
-    state.v.add(0.5 * dt, state.a);
     motion.impose_rates(state, dt);
-    if (works) {
-      working_force(run, mass_product, work_force);
-      for (unsigned i = 0; i < last_u.size(); ++i) {
-        state.external_work += 0.5 * (work_force[i] + last_force[i]) * (state.u[i] - last_u[i]);
+    Vector work_force, last_force, last_u;
+    const bool given_moves = run.prescribed.depends_on_time();
+    const bool works = run.loads.any() || given_moves;
+    working_force(run, mass_product, work_force);
+    run.observer.start(state);
+    run.result.setup_s = now() - run.started;
+
+    const double loop_started = now(), observed = run.observer.seconds();
+    while (state.t < end * (1 - 1e-12)) {
+      if (works) {
+        last_u = state.u;
+        last_force = work_force;
+      }
+      kick_and_drift(state, dt);
+      ++state.step;
+      state.t += dt;
+      motion.impose_positions(state);
+      check(state, force->force(state.u, state.internal));
+      if (run.loads.depends_on_time()) run.loads.evaluate(state.t, state.external);
+      accelerate(state, mass);
+      state.v.add(0.5 * dt, state.a);
+      motion.impose_rates(state, dt);
+      if (works) {
+        working_force(run, mass_product, work_force);
+        for (unsigned i = 0; i < last_u.size(); ++i) {
+          state.external_work +=
+              0.5 * (work_force[i] + last_force[i]) * (state.u[i] - last_u[i]);
+        }
+      }
+      run.result.dt = dt;
+      run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
+      run.observer.after_step(state);
+      if (!chosen && state.step % steps_between_estimates == 0) {
+        const double critical = stable_step(5, 5);
+        if (dt > renew_above * critical) {
+          dt = whole_steps(end - state.t, run.options.dt_factor * critical);
+        }
       }
     }
-    run.result.dt = dt;
     run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
-    run.observer.after_step(state);
-    if (!chosen && state.step % steps_between_estimates == 0) {
-      const double critical = stable_step(5, 5);
-      if (dt > renew_above * critical) {
-        dt = whole_steps(end - state.t, run.options.dt_factor * critical);
-      }
-    }
-  }
-  run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
-  run.observer.finish(state, true);
+    run.observer.finish(state, true);
+  });
 }
 
 template void run_explicit<2>(Run<2>&);

@@ -72,51 +72,53 @@ template <int dim> void run_newmark(Run<dim>& run) {
   table.consistent_mass(run.problem.material.rho0, M);
   const MassProduct mass_product = [&M](const Vector& x, Vector& y) { M.vmult(y, x); };
   run.observer.connect(table, mass_product);
-  const double tolerance =
-      run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
-  Newton<dim> newton(table, run.prescribed, run.options, tolerance,
-                     run.discretisation.smallest_cell(),
-                     run.options.linear_solver == LinearChoice::direct, linear_tolerance);
-  const double beta = run.options.beta, gamma = run.options.gamma;
-  const double dt = time_step(run), end = run.problem.end_time;
+  keep_what_was_reached(run, [&] {
+    const double tolerance =
+        run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
+    Newton<dim> newton(table, run.prescribed, run.options, tolerance,
+                       run.discretisation.smallest_cell(),
+                       run.options.linear_solver == LinearChoice::direct, linear_tolerance);
+    const double beta = run.options.beta, gamma = run.options.gamma;
+    const double dt = time_step(run), end = run.problem.end_time;
 
-  impose(run.prescribed, 0, state.u);
-  initial_velocity(run, dt);
-  if (const long bad = table.force(state.u, state.internal); bad >= 0) {
-    throw SolveError("det F", 0, 0, bad, "in the initial state");
-  }
-  run.loads.evaluate(0, state.external);
-  initial_acceleration(run, M, dt);
-  Vector work_force, last_force, last_u, last_a;
-  working_force(run, mass_product, work_force);
-  run.result.dt = dt;
-  run.observer.start(state);
-  run.result.setup_s = now() - run.started;
-
-  Inertia inertia{&M, 1 / (beta * dt * dt), Vector(state.u.size())};
-  const double loop_started = now(), observed = run.observer.seconds();
-  while (state.t < end * (1 - 1e-12)) {
-    last_u = state.u;
-    last_a = state.a;
-    last_force = work_force;
-    inertia.predicted = state.u;
-    inertia.predicted.add(dt, state.v, dt * dt * (0.5 - beta), state.a);
-    ++state.step;
-    state.t = std::min(end, state.step * dt);
-    if (run.loads.depends_on_time()) run.loads.evaluate(state.t, state.external);
-    newton.solve(state, run.prescribed.values(state.t), &inertia);
-    state.a = state.u;
-    state.a -= inertia.predicted;
-    state.a *= inertia.factor;
-    state.v.add(dt * (1 - gamma), last_a, dt * gamma, state.a);
-    working_force(run, mass_product, work_force);
-    for (unsigned i = 0; i < last_u.size(); ++i) {
-      state.external_work += 0.5 * (work_force[i] + last_force[i]) * (state.u[i] - last_u[i]);
+    impose(run.prescribed, 0, state.u);
+    initial_velocity(run, dt);
+    if (const long bad = table.force(state.u, state.internal); bad >= 0) {
+      throw SolveError("det F", 0, 0, bad, "in the initial state");
     }
-    run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
-    run.observer.after_step(state);
-  }
-  run.observer.finish(state, true);
+    run.loads.evaluate(0, state.external);
+    initial_acceleration(run, M, dt);
+    Vector work_force, last_force, last_u, last_a;
+    working_force(run, mass_product, work_force);
+    run.result.dt = dt;
+    run.observer.start(state);
+    run.result.setup_s = now() - run.started;
+
+    Inertia inertia{&M, 1 / (beta * dt * dt), Vector(state.u.size())};
+    const double loop_started = now(), observed = run.observer.seconds();
+    while (state.t < end * (1 - 1e-12)) {
+      last_u = state.u;
+      last_a = state.a;
+      last_force = work_force;
+      inertia.predicted = state.u;
+      inertia.predicted.add(dt, state.v, dt * dt * (0.5 - beta), state.a);
+      ++state.step;
+      state.t = std::min(end, state.step * dt);
+      if (run.loads.depends_on_time()) run.loads.evaluate(state.t, state.external);
+      newton.solve(state, run.prescribed.values(state.t), &inertia);
+      state.a = state.u;
+      state.a -= inertia.predicted;
+      state.a *= inertia.factor;
+      state.v.add(dt * (1 - gamma), last_a, dt * gamma, state.a);
+      working_force(run, mass_product, work_force);
+      for (unsigned i = 0; i < last_u.size(); ++i) {
+        state.external_work += 0.5 * (work_force[i] + last_force[i]) * (state.u[i] - last_u[i]);
+      }
+      run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
+      run.observer.after_step(state);
+    }
+    run.observer.finish(state, true);
+  });
 }
 
 template void run_newmark<2>(Run<2>&);

@@ -24,6 +24,19 @@ template <int dim> struct Run {
   }
 };
 
+/// Runs `loop`. Where it ends early, the observer writes what was reached while the forces and
+/// masses that it is connected to still live.
+template <int dim, class Loop> void keep_what_was_reached(Run<dim>& run, const Loop& loop) {
+  try {
+    loop();
+  } catch (const InputError&) {
+    throw;
+  } catch (...) {
+    run.observer.finish(run.state, false);
+    throw;
+  }
+}
+
 /// Seconds on a steady clock.
 double now();
 

@@ -93,36 +93,38 @@ template <int dim, class Law> void run_with(Run<dim>& run, Law& law) {
   State& state = run.state;
   const ElementTable<dim, Law> table(run.discretisation, law, run.problem.thickness);
   run.observer.connect(table, MassProduct());
-  const bool direct = use_direct(run) || !table.symmetric();
-  const double tolerance =
-      run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
-  Newton<dim> newton(table, run.prescribed, run.options, tolerance,
-                     run.discretisation.smallest_cell(), direct, 1e-10);
-  if (const long bad = table.force(state.u, state.internal); bad >= 0) {
-    throw SolveError("det F", 0, 0, bad, "in the initial state");
-  }
-  if (run.plastic != nullptr) run.plastic->commit();
-  state.external = state.internal;  // the loads under which the initial state is at rest
-  run.observer.start(state);
-  run.result.setup_s = now() - run.started;
-
-  const double loop_started = now(), observed = run.observer.seconds();
-  for (int k = 1; k <= run.problem.load_steps; ++k) {
-    LoadStep step;
-    step.t_0 = state.t;
-    step.t_1 = static_cast<double>(k) / run.problem.load_steps;
-    step.given_1 = run.prescribed.values(step.t_1);
-    for (std::size_t i = 0; i < run.prescribed.size(); ++i) {
-      step.given_0.push_back(state.u[run.prescribed.dof(i)]);
+  keep_what_was_reached(run, [&] {
+    const bool direct = use_direct(run) || !table.symmetric();
+    const double tolerance =
+        run.options.tolerance > 0 ? run.options.tolerance : default_tolerance;
+    Newton<dim> newton(table, run.prescribed, run.options, tolerance,
+                       run.discretisation.smallest_cell(), direct, 1e-10);
+    if (const long bad = table.force(state.u, state.internal); bad >= 0) {
+      throw SolveError("det F", 0, 0, bad, "in the initial state");
     }
-    step.external_0 = state.external;
-    run.loads.evaluate(step.t_1, step.external_1);
-    solve_step(run, newton, step);
+    if (run.plastic != nullptr) run.plastic->commit();
+    state.external = state.internal;  // the loads under which the initial state is at rest
+    run.observer.start(state);
+    run.result.setup_s = now() - run.started;
+
+    const double loop_started = now(), observed = run.observer.seconds();
+    for (int k = 1; k <= run.problem.load_steps; ++k) {
+      LoadStep step;
+      step.t_0 = state.t;
+      step.t_1 = static_cast<double>(k) / run.problem.load_steps;
+      step.given_1 = run.prescribed.values(step.t_1);
+      for (std::size_t i = 0; i < run.prescribed.size(); ++i) {
+        step.given_0.push_back(state.u[run.prescribed.dof(i)]);
+      }
+      step.external_0 = state.external;
+      run.loads.evaluate(step.t_1, step.external_1);
+      solve_step(run, newton, step);
+      run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
+      run.observer.after_step(state);
+    }
     run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
-    run.observer.after_step(state);
-  }
-  run.result.wall_s = now() - loop_started - (run.observer.seconds() - observed);
-  run.observer.finish(state, true);
+    run.observer.finish(state, true);
+  });
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ class Body : public testing::TestWithParam<Variant> {
 };
 
 TEST_P(Body, HasTheMassOfTheBody) {
-  const auto body = make();
+  const auto body = make(3, 0);  // Gauss-Lobatto rules are exact on boxes
   double mass = 0;
   for (const double m : body->masses()) {
     EXPECT_GT(m, 0);
