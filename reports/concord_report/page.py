@@ -115,7 +115,7 @@ def _study_view(study, cases, jobs, store, warnings, out):
                 for c in cases if c.index in shown],
         "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": matched.tables_of(study, cases),
         "groups": groups, "missing": missing, "tables": _tables(study, cases),
-        "runs": tables.runs_table(cases), "run_count": len(study.rows),
+        "runs": tables.runs_table(study, cases), "run_count": len(study.rows),
         "fem": fronts.fem_note(cases),
     }
 

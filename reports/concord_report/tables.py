@@ -99,14 +99,19 @@ def convergence_table(study, cases, path):
          number_column("local order", [orders[c.index][c.levels.index(l)] for c, l in pairs], 3),
          number_column("fitted order", [f and f.get("slope") for f in fits], 3),
          number_column("R²", [f and f.get("r2") for f in fits], 4),
-         number_column("run time [s]", [l.mean("wall_s") for _, l in pairs], 3),
-         number_column("ns a particle a step", [l.mean("ns_per_particle_step") for _, l in pairs], 3),
+         *_costs(study, [number_column("run time [s]", [l.mean("wall_s") for _, l in pairs], 3),
+                         number_column("ns a particle a step", [l.mean("ns_per_particle_step") for _, l in pairs], 3)]),
          balance_column([l.rows for _, l in pairs])],
         "Errors are means over the seeds. The local order is taken against the line before; the "
         "fitted order stands on the finest line of its case."
         if seeds != [1] else
         "The local order is taken against the line before; the fitted order stands on the finest "
         "line of its case.")
+
+
+def _costs(study, columns):
+    """Columns of run time: only of studies that ran one run at a time (`timing = true`)."""
+    return columns if study.data.get("timing") else []
 
 
 def _measured(case, path):
@@ -200,7 +205,7 @@ def _safety(entry):
     return entry.get("safety_factor", entry.get("safety"))
 
 
-def runs_table(cases):
+def runs_table(study, cases):
     """Every run, one a line: for whoever wants to check the means."""
     rows = [(c, r) for c in cases for r in c.rows]
     if not rows:
@@ -216,7 +221,7 @@ def runs_table(cases):
          numbers("unknowns", "unknowns"), numbers("steps", "steps"), numbers("Δt [s]", "dt"),
          numbers(ENDS[time_name([r for _, r in rows])], "t_end"),
          *[numbers(axis(e), f"errors.{e}") for e in errors],
-         numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s"),
+         *_costs(study, [numbers("set-up [s]", "setup_s"), numbers("run time [s]", "wall_s")]),
          numbers("threads", "threads"), numbers("memory [MB]", "peak_rss_mb"),
          balance_column([[r] for _, r in rows], state),
          text_column("remark", [_remark(r) for _, r in rows]) if any(_remark(r) for _, r in rows) else None])

@@ -1,6 +1,7 @@
 """./concord bench --compare from end to end, on a small project in a git repository made up here."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -50,6 +51,26 @@ class Launcher(unittest.TestCase):
         run = subprocess.run([str(self.folder / "concord"), "bench", "--compare", *arguments], capture_output=True, text=True,
                              env=environment)
         return run.returncode, run.stdout, run.stderr
+
+    def test_every_command_of_the_usage_text_is_known(self):
+        def launcher(*arguments):
+            return subprocess.run([str(self.folder / "concord"), *arguments], capture_output=True, text=True,
+                                  env={**os.environ, "CONCORD_SKIP_PACKAGES": "1"})
+        commands = set(re.findall(r"^  \./concord (\w+)", launcher("help").stdout, re.MULTILINE))
+        self.assertGreaterEqual(commands, {"report", "test", "run", "probe", "study", "bench", "list", "describe"})
+        allowed = launcher("nonsense").stderr
+        self.assertIn('found "nonsense"', allowed)
+        for command in commands:
+            self.assertIn(command, allowed)
+            self.assertNotIn("command line: found", launcher(command).stderr, command)
+
+    def test_every_source_makes_the_launcher_build(self):
+        watched = re.search(r"^sources=\(([^)]*)\)", (TOP / "concord").read_text(), re.MULTILINE).group(1).split()
+        for folder in ("scene", "particle", "sph_reference", "fem_reference", "studies", "tests", "cmake"):
+            for path in (TOP / folder).rglob("*"):
+                if path.suffix in (".cpp", ".hpp", ".inc", ".cmake") or path.name == "CMakeLists.txt":
+                    name = path.relative_to(TOP).as_posix()
+                    self.assertTrue(any(name == w or name.startswith(w + "/") for w in watched), name)
 
     def test_working_tree_against_a_revision(self):
         self.commit()

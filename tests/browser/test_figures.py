@@ -143,7 +143,7 @@ class Balance(unittest.TestCase):
         for mark in (None, "does not close"):
             rows = [row("cbm", "", 1.0), row("cbm", "b", 2.0, balance=mark)]
             one = study(rows)
-            made = tables.runs_table(cases.cases_of(one))
+            made = tables.runs_table(one, cases.cases_of(one))
             badges = [cell for line in made["rows"] for cell in line if cell.get("badge")]
             self.assertEqual(len(badges), 1 if mark else 0)
             self.assertEqual("does not close" in made["note"], bool(mark))
@@ -184,7 +184,7 @@ class Words(unittest.TestCase):
 
     def test_a_run_that_was_compared_with_nothing_tells_why(self):
         one = study([row("cbm", "", 1.0, comparisons={"difference": {"reason": "the reference was not run"}})])
-        made = tables.runs_table(cases.cases_of(one))
+        made = tables.runs_table(one, cases.cases_of(one))
         self.assertEqual(made["rows"][0][-1]["text"], "the reference was not run")
 
 

@@ -114,6 +114,15 @@ class Cases(unittest.TestCase):
         case, = cases.cases_of(study(rows))
         self.assertEqual(case.levels[0].values("errors.e"), [0.05])
 
+    def test_costs_are_shown_of_timed_studies_only(self):
+        rows = [self.row(4, 1, 0.05, wall_s=1.0, setup_s=0.5), self.row(8, 1, 0.01, wall_s=2.0, setup_s=0.5)]
+        for timing in (True, False):
+            one = study(rows, timing=timing)
+            found = cases.cases_of(one)
+            made = [tables.convergence_table(one, found, "errors.e"), tables.runs_table(one, found)]
+            for table in made:
+                self.assertEqual("run time [s]" in [c["label"] for c in table["columns"]], timing)
+
     def test_table_leaves_out_empty_columns_and_marks_missing(self):
         rows = [self.row(4, 1, 0.05, wall_s=1.0), self.row(8, 1, None)]
         one = study(rows, fits=[{"method": "delaunay", "variant": "xi 1", "quantity": "errors.e", "slope": 2.0}])
