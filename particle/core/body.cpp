@@ -193,13 +193,4 @@ double Body::simplex_volume(std::size_t s) const {
   return std::abs(volume_gradients(dim, P, g));
 }
 
-std::vector<Index> fixed_blocks(Index n) {
-  const Index count = std::clamp<Index>(n / 16384, 1, 16);
-  std::vector<Index> begin(count + 1);
-  for (Index k = 0; k <= count; ++k) {
-    begin[k] = static_cast<Index>(static_cast<std::int64_t>(n) * k / count);
-  }
-  return begin;
-}
-
 }  // namespace concord::particle

@@ -57,8 +57,4 @@ Body make_body(const scene::Problem& problem, double h, double perturb, std::uin
 Body make_body(const scene::Problem& problem, scene::Mesh mesh,
                CellSource cells = CellSource::delaunay, const Executor& executor = Executor(1));
 
-/// Contiguous ranges of particles, the same for every number of threads: block k is [begin[k],
-/// begin[k+1]). About 16384 particles each, at most 16 blocks.
-std::vector<Index> fixed_blocks(Index n);
-
 }  // namespace concord::particle

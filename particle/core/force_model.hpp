@@ -17,7 +17,7 @@ namespace concord::particle {
 
 /// A kernel met a state it cannot go on from. The caller adds step and time.
 struct BadState {
-  std::string quantity;  ///< "det F", "displacement"
+  std::string quantity;  ///< "det F", "displacement", "velocity", "force"
   Index particle;
 };
 
@@ -57,8 +57,9 @@ class ForceModel {
   void hold_flow(bool on) { m_constitution.hold(on); }
 
   /// f = internal and stabilisation force [N], overwritten; columns of `stride` doubles a
-  /// particle. `v` is read only by models with viscosity. No allocation. Throws BadState for
-  /// det F <= 0 or NaN (lowest particle number).
+  /// particle. `v` is read only by models with viscosity. Allocates
+  /// nothing that grows with the particles. Throws BadState for det F <= 0 or NaN (lowest
+  /// particle number).
   virtual void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
                       const Executor& executor) = 0;
 
@@ -66,7 +67,7 @@ class ForceModel {
   /// an order that no other particle, thread or part has a say in can offer them: it loops over
   /// the parts instead of [0, n), after computing what they need of their neighbours (stresses
   /// of the particles within reach), and `forces` is forces_of({{0, n}}). Regions at rest
-  /// (rest_regions.hpp) and two-rate steps live on it.
+  /// (rest_regions.hpp) live on it.
   virtual bool has_parts() const { return false; }
 
   /// Forces on the particles of `parts` (ascending, apart, not empty) alone, the same bits as

@@ -20,9 +20,9 @@ double seconds_since(Clock::time_point begin) {
 
 /// Whether the run has mass damping: asked for, or that of a static scene's damped motion.
 bool damped(const scene::Problem& problem, const scene::Settings& settings) {
-  if (settings.number("damping") > 0) return settings.word("solver") != "static";
-  return problem.is_static && settings.word("solver") == "explicit" &&
-         !(settings.number("duration") > 0);
+  if (problem.is_static && settings.word("solver") != "explicit") return false;
+  if (settings.number("damping") > 0) return true;
+  return problem.is_static && !(settings.number("duration") > 0);
 }
 
 /// One run, so that what was reached can be told from wherever it ends.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <numeric>
 
 namespace concord::particle::delaunay {
 namespace {
@@ -57,6 +59,29 @@ void append_row(const Body& body, const Stars& stars, Index a, std::vector<Bond>
     bond->B_ab = 0.5 * (bond->B_ab - bond->B_ba);
     bond->B_ba = -bond->B_ab;
   }
+}
+
+/// Edges of the triangulation: bonds with b > a, over all a.
+std::size_t edge_count(const Body& body, const Stars& stars, const Executor& executor) {
+  const Triangulation& t = body.triangulation;
+  const int nv = t.dim + 1;
+  std::vector<std::size_t> counts(Executor::pieces(body.n));
+  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
+    std::size_t count = 0;
+    std::vector<Index> others;
+    for (std::size_t a = first; a < last; ++a) {
+      others.clear();
+      for (Index k = stars.begin[a]; k < stars.begin[a + 1]; ++k) {
+        const Index* v = &t.simplices[static_cast<std::size_t>(stars.simplex[k]) * nv];
+        std::copy_if(v, v + nv, std::back_inserter(others),
+                     [a](Index b) { return b > static_cast<Index>(a); });
+      }
+      std::sort(others.begin(), others.end());
+      count += std::unique(others.begin(), others.end()) - others.begin();
+    }
+    counts[first / Executor::piece] = count;
+  });
+  return std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 
 /// Rows of a range of particles, before they are put together.
@@ -147,13 +172,7 @@ double interface_area(int dim, const Bond& bond) {
 
 Bonds make_bonds(const Body& body, bool contact, const Executor& executor) {
   const Stars stars(body);
-  std::vector<Piece> pieces(Executor::pieces(body.n));
-  executor.for_pieces(body.n, [&](std::size_t first, std::size_t last) {
-    pieces[first / Executor::piece] =
-        make_piece(body, stars, static_cast<Index>(first), static_cast<Index>(last), contact);
-  });
-  std::size_t count = 0;
-  for (const Piece& piece : pieces) count += piece.other.size();
+  const std::size_t count = edge_count(body, stars, executor);
   Bonds bonds;
   bonds.begin.assign(1, 0);
   bonds.begin.reserve(body.n + 1);
