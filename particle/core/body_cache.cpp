@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -41,10 +43,11 @@ class Fnv {
   std::uint64_t m_first = 0xcbf29ce484222325, m_second = 0x9e3779b97f4a7c15;
 };
 
-std::string contents(const fs::path& file) {
+/// Bytes of a file; none if it cannot be read.
+std::optional<std::string> contents(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
-  text << stream.rdbuf();
+  if (!(text << stream.rdbuf()) || !stream) return {};
   return text.str();
 }
 
@@ -53,6 +56,29 @@ fs::path scene_library() {
   if (dladdr(reinterpret_cast<void*>(&scene::interrupted), &info) == 0 || !info.dli_fname)
     return {};
   return info.dli_fname;
+}
+
+/// Hash of the program and the scene library, read once; none if they cannot be.
+const std::optional<std::string>& maker() {
+  static const std::optional<std::string> digits = []() -> std::optional<std::string> {
+    const auto library = contents(scene_library()), program = contents("/proc/self/exe");
+    if (!library || !program) return {};
+    Fnv hash;
+    hash.add(*library);
+    hash.add(*program);
+    return hash.digits();
+  }();
+  return digits;
+}
+
+/// Whether a .geo reads other files, runs a program or asks the environment.
+bool reads_more(const std::string& geometry) {
+  constexpr std::array words{"Include",   "Merge",          "SystemCall",  "System Call",
+                             "FileName",  "ShapeFromFile",  "CommandLine", "GetEnv",
+                             "OnelabRun", "ExternalProcess"};
+  return std::any_of(words.begin(), words.end(), [&](const char* word) {
+    return geometry.find(word) != std::string::npos;
+  });
 }
 
 constexpr std::uint64_t file_mark = 0x31594444424e4f43;  // "CONBDDY1"
@@ -89,6 +115,7 @@ struct Writer {
     value(size);
     bytes(v.data(), size * sizeof(T));
   }
+  void check_count(std::uint64_t, std::size_t) const {}
   void text(std::string& t) {
     std::vector<char> letters(t.begin(), t.end());
     list(letters);
@@ -107,10 +134,13 @@ struct Reader {
     sum.add(data, count);
   }
   template <class T> void value(T& v) { bytes(&v, sizeof v); }
+  void check_count(std::uint64_t count, std::size_t bytes_each) const {
+    if (count > size / bytes_each) throw std::ios_base::failure("damaged");
+  }
   template <class T> void list(std::vector<T>& v) {
     std::uint64_t count = 0;
     value(count);
-    if (count > size / sizeof(T)) throw std::ios_base::failure("damaged");
+    check_count(count, sizeof(T));
     v.resize(count);
     bytes(v.data(), count * sizeof(T));
   }
@@ -137,6 +167,7 @@ template <class File> void transfer(File& file, scene::Mesh& mesh) {
   file.list(mesh.nodes);
   std::uint64_t entities = mesh.entities.size(), groups = mesh.groups.size();
   file.value(entities);
+  file.check_count(entities, sizeof(std::uint64_t));  // of each one's closure
   mesh.entities.resize(entities);
   for (scene::Entity& e : mesh.entities) transfer(file, e);
   file.list(mesh.node_entity);
@@ -179,20 +210,18 @@ std::optional<BodyCache> BodyCache::from_environment() {
 }
 
 std::string BodyCache::key(const scene::Problem& problem, const Arrangement& wanted) const {
-  const std::string geometry = contents(problem.geometry);
-  for (const char* word : {"Include", "Merge", "SystemCall", "System Call"})
-    if (geometry.find(word) != std::string::npos) return "";
+  const auto geometry = contents(problem.geometry);
+  if (!geometry || reads_more(*geometry) || !maker()) return "";
   Fnv hash;
   hash.add("body 1");
-  hash.add(geometry);
+  hash.add(*geometry);
   for (const auto& [name, value] : problem.parameters)
     hash.add(fmt::format("{} = {:.17g}", name, value));
   hash.add(fmt::format("dimension {} layout {} h {:.17g} perturb {:.17g} seed {} cells {}",
                        problem.dim(), static_cast<int>(problem.layout), wanted.h,
                        wanted.perturb, wanted.seed, static_cast<int>(wanted.cells)));
   hash.add(scene::mesher_version());
-  hash.add(contents(scene_library()));
-  hash.add(contents("/proc/self/exe"));
+  hash.add(*maker());
   return hash.digits();
 }
 
@@ -221,7 +250,8 @@ bool BodyCache::fetch(const std::string& key, Body& body, double& made_s) const 
 void BodyCache::store(const std::string& key, const Body& body, double made_s) const {
   std::error_code failed;  // a cache that cannot be written is no reason to stop
   fs::create_directories(m_folder, failed);
-  const fs::path draft = m_folder / fmt::format("{}.{}", key, ::getpid());
+  static std::atomic<unsigned> drafts{0};
+  const fs::path draft = m_folder / fmt::format("{}.{}.{}", key, ::getpid(), ++drafts);
   Writer writer{std::ofstream(draft, std::ios::binary), {}};
   std::uint64_t mark = file_mark;
   writer.value(mark);
@@ -243,9 +273,11 @@ void BodyCache::make_room() const {
   std::vector<File> files;
   std::uintmax_t total = 0;
   std::error_code gone;  // by the hand of another process
-  for (const auto& entry : fs::directory_iterator(m_folder, gone)) {
-    const File file{entry.path(), entry.last_write_time(gone), entry.file_size(gone)};
-    if (gone) continue;
+  fs::directory_iterator entry(m_folder, gone);
+  for (; !gone && entry != fs::directory_iterator(); entry.increment(gone)) {
+    std::error_code of_time, of_size;
+    const File file{entry->path(), entry->last_write_time(of_time), entry->file_size(of_size)};
+    if (of_time || of_size) continue;
     files.push_back(file);
     total += file.size;
   }

@@ -28,8 +28,8 @@ class BodyCache {
   /// The folder `bodies` below $CONCORD_CACHE; none if that is not set.
   static std::optional<BodyCache> from_environment();
 
-  /// Name of the file; empty where the .geo reads other files, whose contents are not known
-  /// here.
+  /// Name of the file; empty where the .geo reads other files or asks the environment, whose
+  /// contents are not known here, and where a file cannot be read.
   std::string key(const scene::Problem& problem, const Arrangement& wanted) const;
   /// Node order, triangulation, mesh and the time they took to make; false if they are not
   /// there.

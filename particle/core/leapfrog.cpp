@@ -236,13 +236,56 @@ void Leapfrog::write(Recorder& recorder, bool row, bool frame) {
 }
 
 /// After a step that failed: undoes its drift, so that the last good state can be written and
-/// told.
-void Leapfrog::step_back() {
-  for (std::size_t k = 0; k < m_u.size(); ++k) m_u[k] -= m_dt_last * m_v[k];
-  m_t -= m_dt_last;
+/// told. False where that gives no good state either.
+bool Leapfrog::step_back() {
+  const double dt = m_dt_last;
+  for (std::size_t k = 0; k < m_u.size(); ++k) m_u[k] -= dt * m_v[k];
+  m_t -= dt;
+  if (m_constraints.moving()) {  // the step's prescribed values may not be numbers
+    // Prescribed particles keep the velocity of a step earlier.
+    m_constraints.impose(load_time(m_t - dt), m_v);
+    m_constraints.impose(load_time(), m_u);
+    for (const PrescribedDof& dof : m_constraints.dofs()) {
+      const std::size_t k =
+          static_cast<std::size_t>(dof.particle) * m_model.body().stride + dof.component;
+      m_v[k] = dt > 0 && m_t >= dt ? (m_u[k] - m_v[k]) / dt : 0;
+    }
+  }
   m_dt_last = 0;
-  m_model.forces(m_u, m_v, m_f, m_executor);
-  m_loads.add(load_time(), m_f);
+  try {
+    m_model.forces(m_u, m_v, m_f, m_executor);
+    m_loads.add(load_time(), m_f);
+  } catch (const BadState&) {
+    return false;
+  }
+  return !not_finite();
+}
+
+/// The first displacement, velocity or force that is not a finite number.
+std::optional<BadState> Leapfrog::not_finite() const {
+  const Body& body = m_model.body();
+  const std::pair<const Column&, const char*> columns[] = {
+      {m_u, "displacement"}, {m_v, "velocity"}, {m_f, "force"}};
+  for (const auto& [column, quantity] : columns) {
+    double sum = 0;  // 0 x is 0 or not a number
+    for (const double x : column) sum += 0 * x;
+    if (sum == 0) continue;
+    for (Index a = 0; a < body.n; ++a) {
+      for (int i = 0; i < body.dim; ++i) {
+        if (!std::isfinite(column[static_cast<std::size_t>(a) * body.stride + i]))
+          return BadState{quantity, a};
+      }
+    }
+  }
+  return {};
+}
+
+/// Before a state is looked at or written. Throws BadState.
+void Leapfrog::check_finite() {
+  const std::optional<BadState> bad = not_finite();
+  if (!bad) return;
+  m_in_step = true;  // this state is not taken
+  throw *bad;
 }
 
 void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
@@ -259,10 +302,13 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     step(size);
     outcome.particle_steps += m_awake_count;
     if (last) m_t = end;
+    const bool look = (outcome.steps + 1) % look_every == 0,
+               row = features::output && rows.due(m_t),
+               frame = features::output && frames.due(m_t);
+    if (look || row || frame) check_finite();
     ++outcome.steps;
     outcome.t = m_t;
     outcome.dt = size;
-    const bool look = outcome.steps % look_every == 0;
     if (look && options.dt_fixed <= 0) {
       const double now = largest_gradient();
       if (std::abs(now - gradient) > options.reestimate_at) {
@@ -273,8 +319,6 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     outcome.settled = look && options.stop_at_residual > 0 && m_t >= m_ramp &&
                       settled(options.stop_at_residual);
     outcome.loop_s += std::chrono::duration<double>(Clock::now() - begin).count();
-    const bool row = features::output && rows.due(m_t),
-               frame = features::output && frames.due(m_t);
     if (features::output) write(recorder, row, frame);
     if ((row || frame) && options.progress) {
       options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
@@ -289,7 +333,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
   m_damping = options.damping;
   const auto failure = [&](const BadState& bad, long step) {
     return SolveError(bad.quantity, step, m_t, bad.particle,
-                      bad.quantity == "det F" ? "det F <= 0 or not a number" : "");
+                      bad.quantity == "det F" ? "det F <= 0 or not a number" : "not finite");
   };
   move_all();
   if (features::rest && options.rest_regions && m_model.has_parts()) {
@@ -298,6 +342,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
   }
   try {
     evaluate();
+    check_finite();
     m_model.commit();
     m_work.start(load_time(), m_u, m_f);
     m_dissipation.start(m_damping);
@@ -305,11 +350,11 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     advance(options, recorder, outcome);
   } catch (const BadState& bad) {
     const SolveError error = failure(bad, m_dt_last > 0 ? outcome.steps + 1 : 0);
-    if (m_in_step) step_back();
-    if (m_dt_last > 0 || m_in_step) write(recorder, true, true);
+    const bool started = m_dt_last > 0, good = !m_in_step || step_back();
+    if (started && good) write(recorder, true, true);
     throw error;
   } catch (const Interrupted&) {
-    write(recorder, true, true);
+    if (!not_finite()) write(recorder, true, true);
     throw;
   }
 }

@@ -54,7 +54,8 @@ class Leapfrog {
            const ExternalLoads& loads, const Executor& executor, double ramp_time = 0);
 
   /// Runs to the end time, writing to `recorder`. Throws SolveError (det F <= 0, NaN) with
-  /// step, time and particle, and Interrupted, both after writing the last good state.
+  /// step, time and particle, and Interrupted, both after writing the last good state (if the
+  /// failed step can be undone). What is written is finite.
   /// `outcome` is current whenever it throws.
   void run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
 
@@ -62,7 +63,8 @@ class Leapfrog {
   State state();
 
  private:
-  double load_time() const { return m_ramp > 0 ? std::min(m_t / m_ramp, 1.0) : m_t; }
+  double load_time() const { return load_time(m_t); }
+  double load_time(double t) const { return m_ramp > 0 ? std::min(t / m_ramp, 1.0) : t; }
   class Schedule;
   static constexpr long look_every =
       64;  ///< steps between looks at the deformation (for omega_max) and the residual
@@ -72,7 +74,9 @@ class Leapfrog {
   void move_all();
   /// body(begin, end) over the particles that are worked on.
   template <class Body> void for_awake(const Body& body) const;
-  void step_back();
+  bool step_back();
+  std::optional<BadState> not_finite() const;
+  void check_finite();
   void advance(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
   void write(Recorder& recorder, bool row, bool frame);
   void kick(double dt, double damping);
