@@ -136,6 +136,23 @@ TEST_P(GradientVectors, AreKeptInRows) {
   }
 }
 
+TEST_P(GradientVectors, AreTheSameBitsOnAnyNumberOfThreads) {
+  const Body fine = make_body(problem, problem.reference_length / (body.dim == 3 ? 24 : 140),
+                              0.3, 9);  // more than one piece
+  ASSERT_GT(Executor::pieces(fine.n), 1u);
+  const Bonds one = make_bonds(fine, true, Executor(1)),
+              three = make_bonds(fine, true, Executor(3));
+  EXPECT_EQ(one.count(), gradient_vectors(fine).size());
+  EXPECT_EQ(one.begin, three.begin);
+  EXPECT_EQ(one.other, three.other);
+  EXPECT_EQ(one.B, three.B);
+  EXPECT_EQ(one.area_over_length, three.area_over_length);
+  EXPECT_EQ(one.surface.begin, three.surface.begin);
+  EXPECT_EQ(one.surface.other, three.surface.other);
+  EXPECT_EQ(one.surface.B_symmetric, three.surface.B_symmetric);
+  EXPECT_EQ(one.surface.B_self, three.surface.B_self);
+}
+
 TEST_P(GradientVectors, OwnVectorOfBoundaryParticlesClosesTheSum) {  // (29)
   const Bonds rows = make_bonds(body, false, Executor(1));
   const Sums s = sums(body, bonds);
