@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace concord::studies {
 namespace fs = std::filesystem;
@@ -77,6 +78,7 @@ int run_command(const RunOptions& options) {
   };
   scene::Result result;
   result.threads = options.threads;
+  if (options.repeats > 0) ::unsetenv("CONCORD_CACHE");  // set-up is timed: bodies are made
   const MemoryUse memory;
   double bytes_per_particle = std::nan("");
   Timings timings;  // the run itself is the warm-up where there are repeats
