@@ -108,6 +108,13 @@ TEST_F(Bodies, AreNamedByEverythingThatDecidesThem) {
   scene::Problem other = block();
   other.parameters["B"] = 3;
   EXPECT_NE(cache.key(other, wanted), base);
+  other = block();
+  other.layout = block().layout == scene::Layout::lattice ? scene::Layout::unstructured
+                                                          : scene::Layout::lattice;
+  EXPECT_NE(cache.key(other, wanted), base);
+  other = block();
+  other.dimension = Dimension::plane_strain;
+  EXPECT_NE(cache.key(other, wanted), base);
   fs::create_directories(m_folder);
   other = block();
   other.geometry = m_folder / "body.geo";
@@ -115,7 +122,13 @@ TEST_F(Bodies, AreNamedByEverythingThatDecidesThem) {
   const std::string own = cache.key(other, wanted);
   std::ofstream(other.geometry) << "Point(1) = {0, 0, 1};";
   EXPECT_NE(cache.key(other, wanted), own);
-  std::ofstream(other.geometry) << "Include \"other.geo\";";
+  for (const char* more :
+       {"Include \"other.geo\";", "Merge \"other.step\";",
+        "a() = ShapeFromFile(\"other.step\");", "a = GetEnv(\"A\");", "SystemCall \"make\";"}) {
+    std::ofstream(other.geometry) << more;
+    EXPECT_EQ(cache.key(other, wanted), "") << more;
+  }
+  other.geometry = m_folder / "absent.geo";
   EXPECT_EQ(cache.key(other, wanted), "");
 }
 
