@@ -176,7 +176,11 @@ State Leapfrog::state() {
   s.external_work = m_work.total(m_u, m_v_full);
   s.impulse = m_work.constant_resultant() * m_t;
   if (!m_dissipation.active()) return s;
-  m_dissipation.before(load_time(), m_u, m_v, m_f);
+  try {
+    m_dissipation.before(load_time(), m_u, m_v, m_f);
+  } catch (const BadState&) {  // after a step that could not be undone
+    return s;
+  }
   s.dissipation = m_dissipation.work() + m_dissipation.taken(0.5 * m_dt_last, m_v_full);
   return s;
 }
