@@ -17,7 +17,8 @@ ProbeInfo drift_info() {
           {number_option("steps", "1", "1e6", 100, 1e9, ">= 100",
                          "time steps at the method's own step (about: dt_factor 0.8 of the "
                          "estimate at rest)")},
-          {{"finished", "1", "share of the time that the run lived"},
+          {{"finished", "1",
+            "share of the time that the run lived; below 1 drifts and trend are absent"},
            {"drift", "1",
             "largest change of kinetic + stored energy less external work, over the largest "
             "energy"},
@@ -53,6 +54,10 @@ class EnergyDrift final : public Probe {
     auto& q = result.quantities;
     q["finished"] = end.failed ? end.result.t_end / problem.end_time : 1.0;
     q["steps_done"] = static_cast<double>(end.result.steps);
+    if (end.failed) {  // drifts of a run cut short say nothing about all its steps
+      result.notes["not_measured"] = "the run ended before its last step: " + end.error;
+      return;
+    }
     tell_momenta(end, q);
     if (!folder.empty()) tell_energy(folder, q);
   }

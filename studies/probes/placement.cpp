@@ -24,7 +24,9 @@ ProbeInfo placement_info() {
            {"least", "that of the number", "smallest value"},
            {"largest", "that of the number", "largest value"},
            {"spread", "1", "(largest - least) / |mean|"},
-           {"deviation", "1", "standard deviation over |mean|"}}};
+           {"deviation", "1", "standard deviation over |mean|"},
+           {"accepted", "1", "arrangements that the method took"},
+           {"refused", "1", "arrangements that it refused (inverted cells)"}}};
 }
 
 /// errors.NAME or quantities.NAME of a finished run.
@@ -50,43 +52,59 @@ class Placement final : public Probe {
 
   void run(const ProbeRequest& request, scene::Result& result) const override {
     const int n = static_cast<int>(request.options.number("seeds"));
-    std::vector<double> values;
+    std::vector<std::pair<std::uint64_t, double>> values;
+    std::string refusal;
     for (int k = 0; k < n; ++k) {
       ProbeRequest one = request;
       one.run.seed += static_cast<std::uint64_t>(k);
       one.run.progress = nullptr;
       if (request.run.progress)
         request.run.progress(static_cast<double>(k) / n, fmt::format("seed {}", one.run.seed));
-      Attempt run = attempt(one, request.problem, {});
+      Attempt run;
+      try {
+        run = attempt(one, request.problem, {});
+      } catch (const InputError& error) {  // of the arrangement, unless it is of every one
+        refusal = error.what();
+        continue;
+      }
       if (run.failed)
         throw SolveError(run.quantity, run.result.steps, run.result.t_end, -1, run.error);
       scene::add_exact_errors(request.problem, run.result);
-      values.push_back(value_of(run.result, request.options.word("quantity")));
+      values.emplace_back(one.run.seed,
+                          value_of(run.result, request.options.word("quantity")));
       tell_run(run, result);
     }
+    if (values.empty()) throw SolveError("every arrangement refused", 0, 0, -1, refusal);
+    if (!refusal.empty()) result.notes["refused"] = refusal;
     tell(values, result);
+    result.quantities["accepted"] = static_cast<double>(values.size());
+    result.quantities["refused"] = n - static_cast<double>(values.size());
     if (request.run.out.empty()) return;
     std::ofstream csv(request.run.out / "seeds.csv");
     csv << "seed,value\n";
-    for (std::size_t k = 0; k < values.size(); ++k)
-      csv << fmt::format("{},{:.10g}\n", request.run.seed + k, values[k]);
+    for (const auto& [seed, value] : values) csv << fmt::format("{},{:.10g}\n", seed, value);
   }
 
  private:
-  static void tell(const std::vector<double>& values, scene::Result& result) {
+  static void tell(const std::vector<std::pair<std::uint64_t, double>>& values,
+                   scene::Result& result) {
     const auto n = static_cast<double>(values.size());
-    double least = values[0], largest = values[0], sum = 0, squares = 0;
-    for (const double value : values) {
+    double least = values[0].second, largest = least, sum = 0, squares = 0;
+    for (const auto& [seed, value] : values) {
       least = std::min(least, value);
       largest = std::max(largest, value);
       sum += value / n;
     }
-    for (const double value : values) squares += (value - sum) * (value - sum) / (n - 1);
+    for (const auto& [seed, value] : values) squares += (value - sum) * (value - sum);
     result.quantities["mean"] = sum;
     result.quantities["least"] = least;
     result.quantities["largest"] = largest;
+    if (values.size() < 2) {
+      result.notes["not_measured"] = "one arrangement has no spread: the others were refused";
+      return;
+    }
     result.quantities["spread"] = (largest - least) / std::abs(sum);
-    result.quantities["deviation"] = std::sqrt(squares) / std::abs(sum);
+    result.quantities["deviation"] = std::sqrt(squares / (n - 1)) / std::abs(sum);
   }
 
   ProbeInfo m_info = placement_info();

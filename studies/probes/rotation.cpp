@@ -16,7 +16,8 @@ ProbeInfo rotation_info() {
           {number_option("turns", "1", "100", 0.01, 1e9, "> 0",
                          "of the body as its initial velocity spins it")},
           {{"turns_done", "1", "turns before the run ended"},
-           {"finished", "1", "turns_done over the option `turns`"},
+           {"finished", "1",
+            "turns_done over the option `turns`; below 1 the numbers that follow are absent"},
            {"angular_momentum_drift", "1", "over sum m|x||v|"},
            {"linear_momentum_drift", "1", "over sum m|v|"},
            {"drift", "1", "of the energy, over the largest energy"},
@@ -104,7 +105,11 @@ class Rotation final : public Probe {
     tell_run(end, result);
     auto& q = result.quantities;
     q["turns_done"] = end.result.t_end / turn;
-    q["finished"] = end.result.t_end / problem.end_time;
+    q["finished"] = end.failed ? end.result.t_end / problem.end_time : 1.0;
+    if (end.failed) {  // drifts of a run cut short say nothing about all its turns
+      result.notes["not_measured"] = "the run ended before its last turn: " + end.error;
+      return;
+    }
     tell_momenta(end, q);
     if (!folder.empty()) tell_energy(folder, q);
     tell_shape(end.result.samples, q);

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <optional>
 
 namespace concord::probes {
 namespace {
@@ -37,6 +36,7 @@ ProbeInfo stable_step_info() {
        {"courant_max", "1", "largest of it"},
        {"accepted", "1", "arrangements that the method took"},
        {"refused", "1", "arrangements that it refused (inverted cells)"},
+       {"refused_share", "1", "refused over all"},
        {"worst_seed", "1", "seed of the least ratio"},
        {"worst_perturb", "1", "perturbation of the least ratio"}}};
   for (const scene::ParameterInfo& option : deformation_options())
@@ -83,7 +83,7 @@ class StableStep final : public Probe {
   void run(const ProbeRequest& request, scene::Result& result) const override {
     const int n = static_cast<int>(request.options.number("arrangements"));
     std::vector<Measured> all;
-    std::optional<InputError> refusal;
+    std::string refusal;
     for (int k = 0; k < n; ++k) {
       scene::RunRequest one = request.run;
       one.seed += static_cast<std::uint64_t>(k);
@@ -94,19 +94,20 @@ class StableStep final : public Probe {
       try {
         body = request.body(one);
       } catch (const InputError& error) {  // of the arrangement, unless it is of every one
-        refusal = error;
+        refusal = error.what();
         continue;
       }
       all.push_back(measure(request, one, *body));
       tell_size(*body, result);
     }
-    if (all.empty()) throw InputError(*refusal);
-    if (refusal) result.notes["refused"] = refusal->what();
+    if (all.empty()) throw SolveError("every arrangement refused", 0, 0, -1, refusal);
+    if (!refusal.empty()) result.notes["refused"] = refusal;
     write(request, all);
     tell(all, &Measured::ratio, "ratio", result);
     tell(all, &Measured::courant, "courant", result);
     result.quantities["accepted"] = static_cast<double>(all.size());
     result.quantities["refused"] = n - static_cast<double>(all.size());
+    result.quantities["refused_share"] = result.quantities["refused"] / n;
     const Measured& worst =
         *std::min_element(all.begin(), all.end(), [](const Measured& p, const Measured& q) {
           return p.ratio < q.ratio;

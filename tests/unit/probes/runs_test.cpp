@@ -106,6 +106,32 @@ TEST_F(Runs, PlacementIsTheSpreadOverSeeds) {
                InputError);
 }
 
+// An arrangement that a method refuses counts; where it refuses all, the run has failed.
+TEST_F(Runs, PlacementCountsWhatIsRefused) {
+  const MadeUp method({}, [](const scene::RunRequest& request, scene::Result& result) {
+    if (request.seed % 2 == 0)
+      throw InputError({"arrangement"}, "perturb", "an inverted cell", "less");
+    result.quantities["tip_y"] = static_cast<double>(request.seed);
+  });
+  scene::RunRequest run;
+  const scene::Problem problem = scene::read_problem("cooks_membrane");
+  const auto place = [&](std::uint64_t seed, const char* seeds) {
+    run.seed = seed;
+    return test::run_probe("placement", problem, method, run,
+                           {{"seeds", seeds}, {"quantity", "quantities.tip_y"}});
+  };
+  const scene::Result four = place(1, "4");
+  EXPECT_EQ(four.quantities.at("accepted"), 2);
+  EXPECT_EQ(four.quantities.at("refused"), 2);
+  EXPECT_NEAR(four.quantities.at("mean"), 2, 1e-12);
+  EXPECT_TRUE(four.notes.contains("refused"));
+  EXPECT_FALSE(place(1, "2").quantities.contains("deviation")) << "of one";
+  const MadeUp never({}, [](const scene::RunRequest&, scene::Result&) {
+    throw InputError({"arrangement"}, "perturb", "an inverted cell", "less");
+  });
+  EXPECT_THROW(test::run_probe("placement", problem, never, run, {}), SolveError);
+}
+
 TEST_F(Runs, RotationMeasuresTurnsAndShape) {
   const scene::Problem problem = scene::read_problem("spinning_block");
   // A cube of eight points that ends turned by 90 degrees, stretched by 1 % along X.
@@ -136,9 +162,21 @@ TEST_F(Runs, RotationMeasuresTurnsAndShape) {
   // 2 X^2 along Z: none, by symmetry.
   const double speed = 10 * std::sqrt(0.09 + 0.36 + 0.64);
   EXPECT_NEAR(q.at("turns_done"), speed / (2 * M_PI), 1e-6);
-  EXPECT_NEAR(q.at("finished"), speed / (2 * M_PI) / 10, 1e-6);
+  EXPECT_EQ(q.at("finished"), 1);
   EXPECT_NEAR(q.at("shape_change"), 0.01 / std::sqrt(3.0), 1e-5);
   EXPECT_NEAR(q.at("nonaffine"), 0, 1e-12);
+  // A run that dies has no drifts: nothing that could pass for perfect.
+  const MadeUp dies([](const scene::RunRequest&) { return std::make_unique<Cube>(); },
+                    [](const scene::RunRequest&, scene::Result& result) {
+                      result.invariants["angular_momentum_drift"] = 0;
+                      result.t_end = 1;
+                      throw SolveError("det F", 7, 1, 3);
+                    });
+  const scene::Result dead = test::run_probe("rotation", problem, dies, {}, {{"turns", "10"}});
+  EXPECT_NEAR(dead.quantities.at("finished"), speed / (2 * M_PI) / 10, 1e-6);
+  EXPECT_FALSE(dead.quantities.contains("angular_momentum_drift"));
+  EXPECT_FALSE(dead.quantities.contains("nonaffine"));
+  EXPECT_TRUE(dead.notes.contains("not_measured"));
 }
 
 }  // namespace

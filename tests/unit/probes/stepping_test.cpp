@@ -71,14 +71,14 @@ TEST(StableStep, ProbePoolsOverArrangementsAndCountsRefusals) {
   EXPECT_NEAR(q.at("courant_min"), critical_of_chain(6, 50, 0.3) * c_p / 0.1, 1e-3 * c_p);
 }
 
-TEST(StableStep, ProbePassesOnARefusalOfEveryArrangement) {
+TEST(StableStep, ProbeFailsWhereEveryArrangementIsRefused) {
   const scene::Problem problem = scene::read_problem("spinning_block");
   const MadeUp method([](const scene::RunRequest&) -> std::unique_ptr<scene::DiscreteBody> {
     throw InputError({}, "geometry", "inverted", "smaller moves");
   });
   scene::RunRequest run;
   EXPECT_THROW(test::run_probe("stable_step", problem, method, run, {{"arrangements", "3"}}),
-               InputError);
+               SolveError);
 }
 
 TEST(Checkerboard, IsTheRatioOfTheSpringsToAShearWave) {
