@@ -64,16 +64,16 @@ fs::path scene_library() {
 }
 
 /// Hash of the code that computes a method, or probes it. The finite elements are a module of
-/// their own; probes and the other methods are linked into the program, which knows a hash of
-/// them.
+/// their own; probes, the other methods and the sources that make and time runs are linked into
+/// the program, which knows a hash of them.
 std::string hash_code(const std::string& method, bool probe) {
   const fs::path library = scene_library();
   const fs::path module = library.parent_path() / "libconcord_fem.so";
-  const bool own_module = method == "fem" && fs::exists(module);
+  // Probes of any method may run finite elements to compare with.
+  const bool fem = (method == "fem" || probe) && fs::exists(module);
   ContentHash hash;
   hash.add_file(library);
-  if (own_module) hash.add_file(module);
-  if (own_module && !probe) return hash.digits();
+  if (fem) hash.add_file(module);
   if (LinkedCode::hash().empty())
     hash.add_file("/proc/self/exe");
   else

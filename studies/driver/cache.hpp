@@ -36,8 +36,9 @@ struct RunKey {
 };
 
 /// Hash of the code that computes a method: the scene library, and what the program is linked
-/// from that makes runs (code_hash.hpp); for `fem`, whose code lives in a module of its own,
-/// the scene library and the module; for probes of it all three. The commit is in none of them.
+/// from that makes and times runs (code_hash.hpp); for `fem`, whose code lives in a module of
+/// its own, and for probes of any method, which may run it to compare with, the module as well.
+/// The commit is in none of them.
 std::string build_hash(const std::string& method, bool probe = false);
 
 /// False when the binaries have been replaced since build_hash was first asked: what runs now

@@ -39,6 +39,11 @@ bool apply_quick(StrictTable& table, Case& entry, bool full) {
   const auto options = inner.scalars("options");
   const auto repeats = read_repeats(inner);
   inner.finish();
+  // Checked in both modes: a full report must not pass a file that a quick one refuses.
+  if (!options.empty() && entry.probe.empty())
+    inner.reject(*inner.node("options"), "only in cases with a probe");
+  if (repeats && !entry.probe.empty())
+    inner.reject(*inner.node("repeats"), "only in cases without a probe");
   if (full) return true;
   for (const auto& [key, value] : options) entry.options[key] = value;
   if (repeats) entry.repeats = *repeats;

@@ -25,8 +25,9 @@ std::string why_no_run(const Study& study, const HeatColumn& column, const HeatR
   const bool any = std::any_of(study.cases.begin(), study.cases.end(), [&](const Case& entry) {
     return entry.matches(column.selector) && entry.matches(row.selector);
   });
-  return any ? fmt::format("no run at resolution {:g}", *row.resolution)
-             : "no case in this report";
+  if (!any) return "no case in this report";
+  return row.resolution ? fmt::format("no run at resolution {:g}", *row.resolution)
+                        : "did not run";
 }
 
 void take_evidence(HeatCell& cell, const Row& run) {

@@ -174,6 +174,8 @@ MatchedPoint match(const WorkCurve& curve, double level) {
   while (below > 0 && points[below - 1].error <= level) --below;
   if (below == points.size()) {
     result.status = MatchStatus::not_reached;
+    result.dips = std::any_of(points.begin(), points.end(),
+                              [level](const WorkPoint& point) { return point.error <= level; });
     result.closes = points.back().closes;
   } else if (below == 0) {
     result.status = MatchStatus::met_by_coarsest;
@@ -225,6 +227,9 @@ MatchedRatio matched_ratio(const Study& study, const Claim& claim,
   const bool other_slower = other->status == MatchStatus::not_reached;
   if (other->status != MatchStatus::met && !other_slower)
     return {{}, why_unusable("the other case", *other), {}};
+  // A coarser run was below the level: how long the case needs is not bounded by its finest.
+  if (other_slower && other->dips)
+    return {{}, why_unusable("the other case", *other) + ", its errors are not monotone", {}};
   MatchedRatio ratio{(other_slower ? *other->finest_time : *other->time) / *one->time, "", {}};
   ratio.remarks = bounds_of(*one, *other);
   if (!ratio.remarks.empty() && claim.maximum) {

@@ -35,7 +35,7 @@ std::optional<std::string> text_at(const nlohmann::json& object,
   return at->is_string() ? std::optional(at->get<std::string>()) : std::nullopt;
 }
 
-/// Why a comparison, a signal or an error has no such number.
+/// Why a comparison, a signal, an error or a probe has no such number.
 std::optional<std::string> reason_of(const Row& row, const std::string& quantity) {
   const std::size_t dot = quantity.find('.'), last = quantity.rfind('.');
   if (dot == std::string::npos) return std::nullopt;
@@ -43,6 +43,7 @@ std::optional<std::string> reason_of(const Row& row, const std::string& quantity
   if (group == "signals" && last > dot)
     return text_at(row.summary, {"signals", quantity.substr(dot + 1, last - dot - 1),
                                  "not_found", quantity.substr(last + 1)});
+  if (group == "quantities") return text_at(row.summary, {"notes", "not_measured"});
   if (group != "errors") return std::nullopt;
   if (auto reason = text_at(row.summary, {"error_sources", name, "reason"})) return reason;
   const auto comparisons = row.summary.find("comparisons");

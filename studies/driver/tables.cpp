@@ -50,10 +50,10 @@ std::set<std::string> quantities_of(const std::vector<Row>& rows) {
 }
 
 Table runs_table(const StudyResult& result) {
-  const std::vector<std::string> costs{
-      "h",          "unknowns", "steps",   "dt",
-      "t_end",      "wall_s",   "setup_s", "ns_per_particle_step",
-      "peak_rss_mb"};
+  std::vector<std::string> costs{"h", "unknowns", "steps", "dt", "t_end"};
+  if (result.study->timing)
+    costs.insert(costs.end(), {"wall_s", "setup_s", "ns_per_particle_step"});
+  costs.emplace_back("peak_rss_mb");
   const auto quantities = quantities_of(result.rows);
   Table table{"runs", {"scene", "method", "variant", "resolution", "seed"}, {}};
   table.columns.insert(table.columns.end(), costs.begin(), costs.end());
@@ -111,7 +111,9 @@ Table references_table(const StudyResult& result) {
   for (const ReferenceResult& reference : result.references) {
     Cells cells = case_cells(result.study->cases[reference.case_index]);
     cells.insert(cells.end(),
-                 {reference.quantity, exact(reference.value), reference.convergence.statement,
+                 {reference.quantity,
+                  reference.resolutions.empty() ? "" : exact(reference.value),
+                  reference.convergence.statement,
                   balance_cell(result, reference.case_index, reference.resolutions)});
     table.cells.push_back(std::move(cells));
   }

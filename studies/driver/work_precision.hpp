@@ -58,6 +58,7 @@ struct MatchedPoint {
   std::optional<double> time, setup_s, wall_s, memory_mb, resolution;
   std::optional<double> finest_error, finest_time;
   std::string reason;    ///< no value
+  bool dips = false;     ///< not reached, though an error of a coarser resolution is below
   bool closes = true;    ///< of the points used
   bool fastest = false;  ///< the least time of its scene at this level
 };

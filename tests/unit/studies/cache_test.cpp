@@ -71,6 +71,15 @@ TEST_F(CacheFolder, ABrokenEntryIsComputedAgain) {
   EXPECT_TRUE(cache.fetch("k", m_top / "back"));
 }
 
+// Probes of particle methods run finite elements to compare with, and runs of finite elements
+// are made and timed by the program: all of these stand on the same code. Each hash had to
+// differ from the others when it left one of the parts out.
+TEST(BuildHash, OfProbesAndOfFiniteElementsHoldsAllTheCode) {
+  EXPECT_EQ(build_hash("delaunay", true), build_hash("fem", true));
+  EXPECT_EQ(build_hash("fem"), build_hash("fem", true));
+  EXPECT_EQ(build_hash("delaunay"), build_hash("tlsph"));
+}
+
 TEST(CacheKey, ChangesWithEverythingThatDecidesTheRun) {
   const fs::path geometry =
       fs::path(testing::TempDir()) / ("concord-geo-" + std::to_string(::getpid()));

@@ -73,6 +73,7 @@ TEST_F(Heat, WhatIsAbsentSaysWhy) {
   EXPECT_FALSE(failed.score);
   EXPECT_EQ(failed.reason, "det F <= 0");
   EXPECT_EQ(failed.run, "runs/3") << "the evidence of the failure";
+  EXPECT_EQ(heat_cell(study, {}, {"D", {}}, row).reason, "did not run");
   row.resolution = 32;
   EXPECT_EQ(cell(row).reason, "no run at resolution 32");
   row.selector.method = "fem";

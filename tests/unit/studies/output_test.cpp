@@ -152,6 +152,18 @@ TEST(Tables, CellsAreEscaped) {
             "| a | b |\n| --- | --- |\n| x, y | p\\|q |\n| say \"so\" |  |\n");
 }
 
+TEST(Tables, CostStandsOnlyInTimedStudies) {
+  Study study = with_claim(1.8);
+  const auto has_cost = [&study] {
+    const auto columns = tables_of(judged(study)).front().columns;
+    return std::find(columns.begin(), columns.end(), "wall_s") != columns.end();
+  };
+  study.timing = true;
+  EXPECT_TRUE(has_cost());
+  study.timing = false;
+  EXPECT_FALSE(has_cost());
+}
+
 TEST(Tables, ConvergenceHasALineALevel) {
   const Study study = with_claim(1.8);
   for (const Table& table : tables_of(judged(study)))

@@ -26,6 +26,8 @@ TEST_F(StudyFile, ReadsProbesAndTheirOptions) {
   expect_error(one_case + "options = { xi = 1 }\n", 8, "options");
   expect_error(one_case + "sweep = { \"options.xi\" = [1] }\n", 8, "sweep");
   expect_error(probe + "repeats = 3\n", 9, "repeats");
+  expect_error(probe + "quick = { repeats = 3 }\n", 9, "repeats");
+  expect_error(one_case + "quick = { options = { xi = 1 } }\n", 8, "options");
   expect_error(probe + "frames = true\n", 9, "frames");
 }
 

@@ -213,6 +213,12 @@ TEST_F(Ladders, BoundsOfRatiosAreToldAsSuch) {
   EXPECT_NE(other.reason.find("a lower bound: the other case does not reach 5 %"),
             std::string::npos)
       << other.reason;
+  const auto dip = rows[4].summary["errors"]["e"];
+  rows[4].summary["errors"]["e"] = 0.01;  // by accident
+  const ClaimResult accident = judged(ratio_claim("delaunay", "tlsph", 0.05));
+  EXPECT_FALSE(accident.measured);
+  EXPECT_NE(accident.reason.find("not monotone"), std::string::npos) << accident.reason;
+  rows[4].summary["errors"]["e"] = dip;
   Claim bounded = ratio_claim("delaunay", "tlsph", 0.05);
   bounded.maximum = 100;
   EXPECT_FALSE(judged(bounded).measured) << "a lower bound cannot meet a maximum";
