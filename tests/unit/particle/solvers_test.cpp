@@ -10,6 +10,12 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 namespace concord::particle {
 namespace {
 
@@ -152,6 +158,53 @@ TEST(Leapfrog, StopsAtNotANumberWithStepAndTime) {
     model.gradients(leapfrog.state().u, H);
     for (const Mat3& h : H) EXPECT_GT((Mat3::Identity() + h).determinant(), 0);
   }
+}
+
+/// A prescribed motion that is no number beyond 60 % of the time ends the run there; what is
+/// written, and what is left, are numbers.
+TEST(Leapfrog, StopsWherePrescribedMotionIsNotANumber) {
+  scene::Problem problem = scene::read_problem("swinging_cube");
+  const double T = problem.end_time, lost = 0.6 * T;
+  std::erase_if(problem.boundaries, [](const auto& bc) { return bc.group[1] == '1'; });
+  problem.initial_displacement = {};
+  problem.exact_displacement = {};
+  std::erase_if(problem.quantities, [](const auto& q) { return q.name == "largest_error"; });
+  scene::BoundaryCondition& pulled = problem.boundaries.front();
+  pulled.kind = scene::BoundaryKind::displacement;
+  pulled.value.component[0] =
+      scene::Expression("1e-4*(1 - sqrt(1 - t/lost))", {{"lost", lost}});
+  const Body body = make_body(problem, 0.25, 0.2, 1);
+  delaunay::DelaunayModel model(body, problem, {});
+  const Executor executor(1);
+  const Constraints constraints(problem, body);
+  ASSERT_TRUE(constraints.moving());
+  const ExternalLoads loads(problem, body);
+  const std::filesystem::path out = std::filesystem::path(testing::TempDir()) /
+                                    ("concord-lost-" + std::to_string(::getpid()));
+  std::filesystem::create_directories(out);
+  Leapfrog leapfrog(problem, model, constraints, loads, executor);
+  LeapfrogOptions options;
+  options.end_time = T;
+  options.dt_fixed = T / 200;
+  options.history_rows = 1000;
+  LeapfrogOutcome outcome;
+  {
+    Recorder recorder(problem, model, constraints, executor, out, false);
+    EXPECT_THROW(leapfrog.run(options, recorder, outcome), SolveError);
+  }
+  EXPECT_LE(outcome.t, lost);
+  EXPECT_GT(outcome.t, lost - 2 * outcome.dt);
+  const State state = leapfrog.state();
+  EXPECT_NEAR(state.t, outcome.t, 1e-9 * T);
+  for (const double u : state.u) EXPECT_TRUE(std::isfinite(u));
+  for (const double v : state.v) EXPECT_TRUE(std::isfinite(v));
+  std::ifstream file(out / "history.csv");
+  std::stringstream history;
+  history << file.rdbuf();
+  EXPECT_GT(history.str().size(), 1000u);
+  EXPECT_EQ(history.str().find("nan"), std::string::npos);
+  EXPECT_EQ(history.str().find("inf"), std::string::npos);
+  std::filesystem::remove_all(out);
 }
 
 /// Statics of a scene, to the end.
