@@ -18,14 +18,13 @@ struct SteppingOptions {
 /// Largest dt for which w of  m w'' = f(u + w) - f(u)  stays bounded under central
 /// differences from a random start at rest, by bisection from `guess` [s]. A mode beyond its
 /// limit by a factor 1 + e alternates and grows by exp(sqrt(8 e)) a step: 300 steps and growth
-/// 1e4 find the limit to 2e-4. Growth without alternation, by a factor g a step (buckling at u,
-/// complex eigenvalues), is not the step's: it does not count, but hides e below (ln g)^2/8.
+/// 1e4 find the limit to 2e-4. Growth without alternation (buckling at u, complex eigenvalues)
+/// is not the step's: it is taken out of w every 16 steps, and hides nothing.
 /// Returns guess/widest or guess*widest where even these are unstable or stable.
 double stable_step(scene::DiscreteBody& body, std::span<const double> u, double guess,
                    const SteppingOptions& options = {});
 
-/// Whether that motion stays below options.growth, or what exceeds it does not alternate, for
-/// all steps at dt.
+/// Whether what alternates of that motion grows by less than options.growth in all steps at dt.
 bool stays_bounded(scene::DiscreteBody& body, std::span<const double> u, double dt,
                    const SteppingOptions& options);
 
