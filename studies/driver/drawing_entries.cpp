@@ -36,6 +36,21 @@ std::vector<Baseline> read_baseline(StrictTable& table) {
   return baseline;
 }
 
+/// As many x as y, in each entry.
+std::vector<Points> read_points(StrictTable& table) {
+  std::vector<Points> all;
+  for (StrictTable& entry : table.inner_tables("points")) {
+    Points points{entry.text("label"), entry.numbers("x"), entry.numbers("y")};
+    if (points.x.empty()) entry.missing("x", "numbers, in the units of the plot");
+    if (points.x.size() != points.y.size())
+      throw InputError(entry.where(), "points.y", std::to_string(points.y.size()) + " values",
+                       "as many as there are in x: " + std::to_string(points.x.size()));
+    entry.finish();
+    all.push_back(std::move(points));
+  }
+  return all;
+}
+
 void read_axes(StrictTable& table, Plot& plot) {
   plot.x_label = table.text_or("x_label", "");
   plot.y_label = table.text_or("y_label", "");
@@ -50,7 +65,15 @@ void read_history(StrictTable& table, Plot& plot) {
   plot.quantity = plot.columns.empty() ? table.text("quantity") : table.text_or("quantity", "");
   plot.resolutions = table.positive_numbers("resolutions");
   plot.change = table.flag_or("change", false);
+  plot.change_from = table.optional_number("change_from");
+  plot.norm = table.flag_or("norm", false);
+}
+
+/// What histories and curves share.
+void read_lines(StrictTable& table, Plot& plot) {
+  plot.log = table.flag_or("log", false);
   plot.baseline = read_baseline(table);
+  plot.points = read_points(table);
 }
 
 Panel read_panel(StrictTable& table) {
@@ -61,7 +84,28 @@ Panel read_panel(StrictTable& table) {
   panel.caption = table.text_or("caption", "");
   if (table.node("difference")) panel.difference = table.flag_or("difference", false);
   panel.time = table.optional_number("time");
+  if (table.node("draw"))
+    panel.draw = choose<std::string>(
+        table, "draw", {{"body", "body"}, {"cells", "cells"}, {"spheres", "spheres"}});
   return panel;
+}
+
+double positive(StrictTable& table, const std::string& key, double fallback) {
+  const double value = table.number_or(key, fallback);
+  if (!(value > 0)) table.reject(*table.node(key), "a number above 0");
+  return value;
+}
+
+std::optional<Animation> read_animation(StrictTable& table) {
+  if (!table.node("animate")) return std::nullopt;
+  StrictTable inner = table.table("animate", "{ frames = 24, seconds = 4 }");
+  Animation animation;
+  animation.from = inner.optional_number("from");
+  animation.to = inner.optional_number("to");
+  animation.frames = positive(inner, "frames", animation.frames);
+  animation.seconds = positive(inner, "seconds", animation.seconds);
+  inner.finish();
+  return animation;
 }
 
 void read_color_range(StrictTable& table, Picture& picture) {
@@ -71,8 +115,11 @@ void read_color_range(StrictTable& table, Picture& picture) {
     picture.range = read_range(table, "range");
     return;
   }
-  picture.common_range = table.text("range") == "common";
-  if (!picture.common_range) table.reject(*node, "\"common\" or [low, high]");
+  const std::string word = table.text("range");
+  picture.common_range = word == "common";
+  picture.robust_range = word == "robust";
+  if (!picture.common_range && !picture.robust_range)
+    table.reject(*node, "\"common\", \"robust\" or [low, high]");
 }
 
 }  // namespace
@@ -90,6 +137,8 @@ Plot read_plot(StrictTable table) {
                                    {"work_precision", "work_precision"}});
   plot.title = table.text_or("title", "");
   plot.note = table.text_or("note", "");
+  plot.statement = table.text_or("statement", "");
+  plot.source = table.text_or("source", "");
   if (plot.kind == "work_precision") plot.time = read_work_time(table);
   if (plot.kind == "curve") {
     plot.x = table.text("x");
@@ -101,6 +150,7 @@ Plot read_plot(StrictTable table) {
   } else {
     plot.quantity = table.text("quantity");
   }
+  if (plot.kind == "curve" || plot.kind == "history") read_lines(table, plot);
   if (plot.kind == "sweep" || plot.kind == "map") plot.setting = table.text("setting");
   if (plot.kind == "sweep") plot.baseline = read_baseline(table);
   if (plot.kind == "map") plot.setting_y = table.text("setting_y");
@@ -118,6 +168,7 @@ Picture read_picture(StrictTable table) {
   if (picture.body.color.empty()) table.missing("color", "a point field of the frames");
   picture.columns = table.optional_number("columns");
   picture.times = table.numbers("times");
+  picture.animate = read_animation(table);
   picture.scale_displacement = table.number_or("scale_displacement", 1);
   for (StrictTable& entry : table.inner_tables("panels")) {
     picture.panels.push_back(read_panel(entry));

@@ -70,6 +70,14 @@ void put_panel(json& object, const Study& study, const Panel& panel) {
   put_text(object, "caption", panel.caption);
   if (panel.difference) object["difference"] = *panel.difference;
   put(object, "time", panel.time);
+  put_text(object, "draw", panel.draw);
+}
+
+json animation_json(const Animation& animation) {
+  json object{{"frames", animation.frames}, {"seconds", animation.seconds}};
+  put(object, "from", animation.from);
+  put(object, "to", animation.to);
+  return object;
 }
 
 json baseline_json(const Study& study, const Baseline& baseline) {
@@ -88,6 +96,8 @@ json plot_json(const Study& study, const Plot& plot) {
   put_text(object, "quantity", plot.quantity);
   put_text(object, "title", plot.title);
   put_text(object, "note", plot.note);
+  put_text(object, "statement", plot.statement);
+  put_text(object, "source", plot.source);
   if (plot.kind == "work_precision") object["time"] = to_text(plot.time);
   put_text(object, "setting", plot.setting);
   put_text(object, "setting_y", plot.setting_y);
@@ -103,10 +113,15 @@ json plot_json(const Study& study, const Plot& plot) {
   if (!plot.resolutions.empty()) object["resolutions"] = plot.resolutions;
   if (!plot.columns.empty()) object["columns"] = plot.columns;
   if (plot.change) object["change"] = true;
+  put(object, "change_from", plot.change_from);
+  if (plot.norm) object["norm"] = true;
+  if (plot.log) object["log"] = true;
   put(object, "slope", plot.slope);
   put_window(object, "inset", plot.inset);
   for (const Baseline& baseline : plot.baseline)
     object["baseline"].push_back(baseline_json(study, baseline));
+  for (const Points& points : plot.points)
+    object["points"].push_back({{"label", points.label}, {"x", points.x}, {"y", points.y}});
   return object;
 }
 
@@ -123,6 +138,8 @@ json picture_json(const Study& study, const Picture& picture) {
   json object{{"scale_displacement", picture.scale_displacement}, {"caption", ""}};
   put_panel(object, study, picture.body);
   if (picture.common_range) object["range"] = "common";
+  if (picture.robust_range) object["range"] = "robust";
+  if (picture.animate) object["animate"] = animation_json(*picture.animate);
   put_range(object, "range", picture.range);
   put_window(object, "crop", picture.crop);
   put(object, "columns", picture.columns);

@@ -107,17 +107,28 @@ struct Window {
   std::optional<Range> x, y;
 };
 
+/// Published values, drawn as markers in the units of the plot.
+struct Points {
+  std::string label;
+  std::vector<double> x, y;
+};
+
 struct Plot {
   std::string kind, quantity, title, setting, setting_y, note;
+  std::string statement, source;  ///< what the paper says of it, and where
   Selector selector;
   std::optional<double> resolution, slope;
-  std::vector<double> resolutions;   ///< curve, history; empty: all
-  std::vector<std::string> columns;  ///< history: several columns in one plot
-  bool change = false;               ///< history: value minus the first one
-  std::string x, y;                  ///< curve: columns of history.csv
+  std::vector<double> resolutions;    ///< curve, history; empty: all
+  std::vector<std::string> columns;   ///< history: several columns in one plot
+  bool change = false;                ///< history: value minus the first one
+  std::optional<double> change_from;  ///< history: minus the one at this time [s], from then on
+  bool norm = false;                  ///< history: length of the vector of the columns
+  bool log = false;                   ///< history, curve: magnitudes on a logarithmic axis
+  std::string x, y;                   ///< curve: columns of history.csv
   std::string x_label, y_label, label;
   std::optional<double> x_scale, y_scale;
   std::vector<Baseline> baseline;
+  std::vector<Points> points;      ///< history, curve
   std::optional<Window> inset;     ///< curve: enlarged in a corner
   WorkTime time = WorkTime::wall;  ///< work_precision
   SourcePosition where;
@@ -130,6 +141,14 @@ struct Panel {
   std::string color, caption;      ///< color: a point field; of a panel: absent, the picture's
   std::optional<bool> difference;  ///< the run's difference.hdf instead of its last frame
   std::optional<double> time;      ///< of the frame, the nearest one [s]; absent: the last
+  std::string draw;                ///< "body" (where empty), "cells" or "spheres"
+};
+
+/// Frames of runs one after the other.
+struct Animation {
+  std::optional<double> from, to;  ///< instants [s]; absent: the first and the last frame
+  double frames = 24;              ///< at most
+  double seconds = 4;              ///< that they play
 };
 
 struct Picture {
@@ -139,8 +158,10 @@ struct Picture {
   std::optional<double> columns;  ///< panels in a row
   std::vector<double> times;      ///< a row of panels each [s]; empty: the panels as they are
   bool common_range = false;      ///< one scale for all panels
-  std::optional<Range> range;     ///< ends of the scale
-  std::optional<Window> crop;     ///< part of the plane shown [m]
+  bool robust_range = false;      ///< and its ends are percentiles
+  std::optional<Animation> animate;
+  std::optional<Range> range;  ///< ends of the scale
+  std::optional<Window> crop;  ///< part of the plane shown [m]
 };
 
 struct Study {
