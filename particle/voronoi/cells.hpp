@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace concord::particle {
+namespace concord::particle::voronoi {
 
 /// A flat entity of the mesh (surface in 3D, straight curve in the plane) that is part of the
 /// body's boundary. Coplanar entities are walls of their own with the same N and offset.
@@ -76,4 +76,4 @@ Cells make_cells(const scene::Mesh& mesh, int dim, double thickness, std::span<c
 void write_cells(const std::filesystem::path& file, const Cells& cells,
                  std::span<const Index> number = {});
 
-}  // namespace concord::particle
+}  // namespace concord::particle::voronoi
