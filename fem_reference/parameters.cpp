@@ -131,6 +131,7 @@ const scene::MethodInfo& method_info() {
 }
 
 Options read_options(const scene::Problem& problem, const scene::RunRequest& request) {
+  scene::refuse_fracture(problem, "fem");
   const scene::Settings settings("fem", method_info().parameters, request.settings);
   Options o;
   o.element = settings.word("element");

@@ -40,4 +40,11 @@ Vec3 Problem::boundary_value(const BoundaryCondition& bc, const Vec3& X, double 
   return ElasticLaw(material, dimension).stress(exact_gradient(X, t)) * N;
 }
 
+void refuse_fracture(const Problem& problem, const std::string& method) {
+  if (!problem.fracture) return;
+  throw InputError(problem.fracture->where, "fracture",
+                   "a scene with fracture for the method " + method,
+                   "a method that can break the material: cbm");
+}
+
 }  // namespace concord::scene

@@ -82,6 +82,27 @@ struct Quantity {
 /// displacement; where everything is prescribed, at every point of the restriction).
 const std::vector<std::string>& quantity_fields();
 
+/// When a bond between two particles fails: by its strain, eps_ab >= sqrt(2 G_f/(E l_c)), Eqs.
+/// (20) and (32) of the Continuum Bond Method paper; or by the work of the stress along it,
+/// n.P N eps_ab/2 >= G_f/l_c with the mean stress of its ends, which is the same in uniaxial
+/// tension and also sees what the bond does not stretch.
+enum class FractureCriterion { strain, energy };
+
+/// A cut that is there from the start: bonds that cross it are removed. Plane problems.
+struct PreCrack {
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]; cracks grow from `to` on
+};
+
+/// Brittle fracture of an elastic material.
+struct Fracture {
+  FractureCriterion criterion = FractureCriterion::strain;
+  double energy_release_rate = 0;  ///< G_f [J/m^2], > 0
+  double length = 0;               ///< l_c of (21), (32) [m]; 0: the run's spacing h
+  std::vector<PreCrack> cracks;
+  std::string arrival;   ///< group at which the crack's arrival is timed; may be empty
+  SourcePosition where;  ///< of the table [fracture]
+};
+
 /// How the points of particle methods, and the meshes of the FEM, lie.
 enum class Layout { lattice, unstructured };
 
@@ -109,6 +130,7 @@ struct Problem {
   std::optional<VectorExpression> initial_velocity;      ///< at t = 0 [m/s]
   std::optional<VectorExpression> exact_displacement;
   std::optional<VectorExpression> exact_velocity;
+  std::optional<Fracture> fracture;
   std::vector<Quantity> quantities;
   int frames =
       20;  ///< field frames over the run, besides the initial one; 0: only the last state
@@ -122,5 +144,8 @@ struct Problem {
   Vec3 boundary_value(const BoundaryCondition& bc, const Vec3& X, double t,
                       const Vec3& N) const;
 };
+
+/// Throws InputError if the scene has fracture: for methods whose bonds cannot break.
+void refuse_fracture(const Problem& problem, const std::string& method);
 
 }  // namespace concord::scene

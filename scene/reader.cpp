@@ -85,6 +85,7 @@ Problem read_problem(const std::string& name_or_path, const std::vector<Override
   read_boundaries(scene, symbols, problem);
   read_loads(scene, symbols, problem);
   read_initial(scene, symbols, problem);
+  read_fracture(scene, symbols, problem);
   read_quantities(scene, problem);
   read_output(scene, problem);
   check_keys_read(root);

@@ -16,6 +16,8 @@ void read_exact(const Section& scene, const Symbols& symbols, Problem& problem);
 void read_boundaries(const Section& scene, const Symbols& symbols, Problem& problem);
 void read_loads(const Section& scene, const Symbols& symbols, Problem& problem);
 void read_initial(const Section& scene, const Symbols& symbols, Problem& problem);
+/// After the material: fracture is for elastic ones.
+void read_fracture(const Section& scene, const Symbols& symbols, Problem& problem);
 void read_quantities(const Section& scene, Problem& problem);
 void read_output(const Section& scene, Problem& problem);
 

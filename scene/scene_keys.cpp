@@ -58,6 +58,19 @@ const std::vector<KeyInfo>& scene_keys() {
       {"exact.displacement", "m", "", "an expression a direction", "The exact displacement"},
       {"exact.velocity", "m/s", "", "an expression a direction", "The exact velocity"},
 
+      {"fracture.energy_release_rate", "J/m^2", "", "> 0",
+       "G_f: energy that a unit of crack area takes"},
+      {"fracture.criterion", "text", "strain", "strain | energy",
+       "A bond breaks when its strain reaches sqrt(2 G_f/(E l_c)), or when the work of the "
+       "stress along it reaches G_f/l_c per volume, the same in uniaxial tension"},
+      {"fracture.length", "m", "the spacing h", "> 0", "l_c of the criterion"},
+      {"fracture.arrival", "text", "", "a physical group of the .geo",
+       "Where the crack's arrival is timed"},
+      {"fracture.crack[].from", "m", "", "an expression of the parameters a direction",
+       "Pre-crack: its mouth; bonds that cross it are removed"},
+      {"fracture.crack[].to", "m", "", "an expression of the parameters a direction",
+       "Pre-crack: its tip"},
+
       {"quantity[].name", "text", "", "letters, digits and _",
        "Name in history.csv and summary.json"},
       {"quantity[].kind", "text", "", "point | average | reaction | maximum",

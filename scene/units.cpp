@@ -113,6 +113,7 @@ const char* dimension_name(const UnitDimension& d) {
   if (d == unit::force) return "force";
   if (d == unit::force_density) return "force per volume";
   if (d == unit::rate) return "rate";
+  if (d == unit::energy_per_area) return "energy per area";
   return "another dimension";
 }
 
@@ -130,6 +131,7 @@ std::string unit_examples(const UnitDimension& d) {
   if (d == unit::pressure) return text + ", e.g. \"17 MPa\" or \"2 kN/mm^2\"";
   if (d == unit::force) return text + ", e.g. \"5 kN\"";
   if (d == unit::force_density) return text + ", e.g. \"1 kN/m^3\"";
+  if (d == unit::energy_per_area) return text + ", e.g. \"100 J/m^2\"";
   return text + ", e.g. \"100 1/s\"";
 }
 

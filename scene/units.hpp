@@ -17,7 +17,7 @@ struct UnitDimension {
 namespace unit {
 inline constexpr UnitDimension none{}, length{1, 0, 0}, time{0, 0, 1}, mass{0, 1, 0},
     velocity{1, 0, -1}, acceleration{1, 0, -2}, density{-3, 1, 0}, pressure{-1, 1, -2},
-    force{1, 1, -2}, force_density{-2, 1, -2}, rate{0, 0, -1};
+    force{1, 1, -2}, force_density{-2, 1, -2}, rate{0, 0, -1}, energy_per_area{0, 1, -2};
 }
 
 /// Value in SI units of text "number unit", where unit is a product or quotient of SI units

@@ -124,10 +124,50 @@ TEST(SceneFile, HardeningOfPlasticMaterials) {
   expect_scene_error(missing, {"[material]", "material.yield_stress", "nothing", "> 0"});
   expect_scene_error(with(ratio, ratio + "yield_stress = \"7 kPa\"\n"),
                      {"\"7 kPa\"", "material.yield_stress", "7 kPa", "j2-hencky"});
-  expect_scene_error(plastic("yield_stress = \"1 MPa\"\nsaturation_stress = \"2 MPa\"\n"),
-                     {"\"2 MPa\"", "material.saturation_stress", "2 MPa", "saturation_exponent"});
+  expect_scene_error(
+      plastic("yield_stress = \"1 MPa\"\nsaturation_stress = \"2 MPa\"\n"),
+      {"\"2 MPa\"", "material.saturation_stress", "2 MPa", "saturation_exponent"});
   expect_scene_error(plastic("yield_stress = \"1 MPa\"\nhardening_modulus = \"-1 MPa\"\n"),
                      {"\"-1 MPa\"", "material.hardening_modulus", "-1 MPa", ">= 0"});
+}
+
+TEST(SceneFile, Fracture) {
+  const std::string head = "[fracture]\n", G = "energy_release_rate = \"100 J/m^2\"\n";
+  const auto crack = [&](const std::string& from, const std::string& to) {
+    return plane_scene(head + G + "[[fracture.crack]]\nfrom = " + from + "\nto = " + to + "\n");
+  };
+  const std::string point = "[\"0\", \"0.5\"]";
+  expect_scene_error(plane_scene(head),
+                     {"[fracture]", "fracture.energy_release_rate", "nothing", "> 0"});
+  expect_scene_error(
+      plane_scene(head + "energy_release_rate = \"100 J/m^3\"\n"),
+      {"\"100 J/m^3\"", "fracture.energy_release_rate", "stress", "unit of energy per area"});
+  expect_scene_error(plane_scene(head + "energy_release_rate = \"0 J/m^2\"\n"),
+                     {"\"0 J/m^2\"", "fracture.energy_release_rate", "0 J/m^2", "> 0"});
+  expect_scene_error(plane_scene(head + G + "criterion = \"strian\"\n"),
+                     {"\"strian\"", "fracture.criterion", "strian", "did you mean strain?"});
+  expect_scene_error(plane_scene(head + G + "length = \"-1 mm\"\n"),
+                     {"\"-1 mm\"", "fracture.length", "-1 mm", "> 0"});
+  expect_scene_error(plane_scene(head + G + "crack = 3\n"),
+                     {"3\n", "fracture.crack", "3", "[[crack]]"});
+  expect_scene_error(crack(point, point), {"", "fracture.crack.0.to", "", "another point"});
+  expect_scene_error(crack(point, "[\"X\", \"1\"]"),
+                     {"[\"X\", \"1\"]", "fracture.crack.0.to", "", "parameters alone"});
+  expect_scene_error(crack(point, "[\"t\", \"1\"]"),
+                     {"[\"t\", \"1\"]", "fracture.crack.0.to", "", "parameters alone"});
+  expect_scene_error(crack(point, "[\"0\"]"),
+                     {"[\"0\"]", "fracture.crack.0.to", "an array of 1", "an array of 2"});
+}
+
+TEST(SceneFile, FractureBesideOtherStatements) {
+  const std::string fracture = "[fracture]\nenergy_release_rate = \"100 J/m^2\"\n";
+  expect_scene_error(with("end_time = \"1 ms\"", "static = true", fracture),
+                     {"[fracture]", "fracture", "static = true", "end_time"});
+  expect_scene_error(with("\"plane strain\"", "\"3D\"", fracture),
+                     {"[fracture]", "fracture", "3D", "plane stress"});
+  expect_scene_error(with("model = \"neo-hookean\"",
+                          "model = \"j2-hencky\"\nyield_stress = \"1 kPa\"", fracture),
+                     {"\"j2-hencky\"", "material.model", "j2-hencky", "an elastic model"});
 }
 
 TEST(SceneFile, Expressions) {
