@@ -47,6 +47,12 @@ constexpr bool rest = false;
 constexpr bool rest = true;        ///< regions at rest left out of the step
 #endif
 
+#ifdef CONCORD_WITHOUT_FRACTURE
+constexpr bool fracture = false;
+#else
+constexpr bool fracture = true;    ///< bonds that can break
+#endif
+
 #ifdef CONCORD_WITHOUT_PENALTY
 constexpr bool penalty = false;
 #else

@@ -5,6 +5,7 @@
 
 #include "particle/core/body.hpp"
 #include "particle/core/constitution.hpp"
+#include "particle/core/fracturing.hpp"
 #include "particle/core/parallel.hpp"
 
 #include <Eigen/SparseCore>
@@ -103,6 +104,9 @@ class ForceModel {
   /// Largest viscous damping ratio of the highest mode, for the stable step: dt <=
   /// (2/w)(sqrt(1+z^2) - z). 0 without viscosity.
   virtual double viscous_damping_ratio(double omega_max) const { return 0 * omega_max; }
+
+  /// The model's side that breaks bonds; nullptr where none can break.
+  virtual Fracturing* fracturing() { return nullptr; }
 
   /// Pair interactions that one force evaluation visits (bonds, or directed neighbours), for
   /// cost tables.

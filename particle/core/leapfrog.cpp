@@ -36,15 +36,16 @@ CONCORD_CLONES void drift_range(std::size_t begin, std::size_t end, double dt,
 Leapfrog::Leapfrog(const scene::Problem& problem, ForceModel& model,
                    const Constraints& constraints, const ExternalLoads& loads,
                    const Executor& executor, double ramp_time)
-    : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads),
-      m_executor(executor), m_ramp(ramp_time), m_work(model.body(), constraints, loads),
+    : m_problem(problem), m_model(model), m_fracturing(model.fracturing()),
+      m_constraints(constraints), m_loads(loads), m_executor(executor), m_ramp(ramp_time),
+      m_work(model.body(), constraints, loads),
       m_dissipation(model, constraints, loads, executor) {
   const Body& body = model.body();
   m_u.assign(body.X.size(), 0.0);
   m_v = m_f = m_u;
   m_inverse_mass.resize(body.n);
   for (Index a = 0; a < body.n; ++a) {
-    m_inverse_mass[a] = 1 / body.m[a];
+    m_inverse_mass[a] = a < body.bulk ? 1 / body.m[a] : 0;  // boundary points are prescribed
     const Vec3 X = body.position(a);
     for (int i = 0; i < body.dim; ++i) {
       const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
@@ -67,8 +68,8 @@ template <class Body> void Leapfrog::for_awake(const Body& body) const {
 
 void Leapfrog::move_all() {
   m_rest.reset();
-  m_awake_count = m_model.body().n;
-  m_awake = {{0, m_awake_count}};
+  m_awake_count = m_model.body().bulk;
+  m_awake = {{0, m_model.body().n}};
 }
 
 /// After a drift: whom the next forces are computed for.
@@ -80,7 +81,9 @@ void Leapfrog::follow_rest() {
   }
   m_awake = m_rest->awake();
   m_awake_count = 0;
-  for (const ParticleRange& range : m_awake) m_awake_count += range.last - range.first;
+  const Index bulk = m_model.body().bulk;
+  for (const ParticleRange& range : m_awake)
+    m_awake_count += std::min(range.last, bulk) - std::min(range.first, bulk);
 }
 
 void Leapfrog::evaluate() {
@@ -90,6 +93,13 @@ void Leapfrog::evaluate() {
     m_model.forces(m_u, m_v, m_f, m_executor);
   if (m_loads.none()) return;
   m_loads.add(load_time(), m_f);
+}
+
+/// Forces at the end of a step dt (0: at the start), after which bonds may break.
+void Leapfrog::advance_forces(double dt) {
+  if (!features::fracture || m_fracturing == nullptr) return evaluate();
+  m_fracturing->advance(m_t, dt, m_u, m_v, m_f, m_executor);
+  if (!m_loads.none()) m_loads.add(load_time(), m_f);
 }
 
 void Leapfrog::kick(double dt, double damping) {
@@ -174,6 +184,7 @@ State Leapfrog::state() {
   s.unbalanced = m_f;
   s.acceleration = m_acceleration;
   s.external_work = m_work.total(m_u, m_v_full);
+  if (m_fracturing != nullptr) s.released = m_fracturing->record().released;
   s.impulse = m_work.constant_resultant() * m_t;
   if (!m_dissipation.active()) return s;
   try {
@@ -225,7 +236,7 @@ void Leapfrog::step(double dt) {
   if (dissipates) m_dissipation.add(kick_dt, m_v);
   m_dt_last = dt;
   if (features::rest && m_rest) follow_rest();
-  evaluate();
+  advance_forces(dt);
   if (features::plasticity) m_model.commit();
   m_in_step = false;
   if (m_work.follows_steps()) m_work.step(load_time(), m_u, m_f);
@@ -277,7 +288,7 @@ std::optional<BadState> Leapfrog::not_finite() const {
     for (Index a = 0; a < body.n; ++a) {
       for (int i = 0; i < body.dim; ++i) {
         if (!std::isfinite(column[static_cast<std::size_t>(a) * body.stride + i]))
-          return BadState{quantity, a};
+          return BadState{quantity, body.particle_at(a)};
       }
     }
   }
@@ -345,7 +356,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     follow_rest();
   }
   try {
-    evaluate();
+    advance_forces(0);
     check_finite();
     m_model.commit();
     m_work.start(load_time(), m_u, m_f);

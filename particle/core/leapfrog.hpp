@@ -69,6 +69,7 @@ class Leapfrog {
   static constexpr long look_every =
       64;  ///< steps between looks at the deformation (for omega_max) and the residual
   void evaluate();
+  void advance_forces(double dt);
   void step(double dt);
   void follow_rest();
   void move_all();
@@ -87,6 +88,7 @@ class Leapfrog {
 
   const scene::Problem& m_problem;
   ForceModel& m_model;
+  Fracturing* m_fracturing;  ///< nullptr where nothing can break
   const Constraints& m_constraints;
   const ExternalLoads& m_loads;
   const Executor& m_executor;

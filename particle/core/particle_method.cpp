@@ -166,6 +166,16 @@ CellSource ParticleMethod::cells(const scene::Settings&) const { return CellSour
 
 void ParticleMethod::divide(Body&, const scene::Problem&, const scene::Settings&) const {}
 
+Body ParticleMethod::make_particles(const scene::Problem& problem,
+                                    const scene::RunRequest& request,
+                                    const scene::Settings& settings,
+                                    const Executor& executor) const {
+  Body body =
+      make_body(problem, request.h, request.perturb, request.seed, cells(settings), executor);
+  divide(body, problem, settings);
+  return body;
+}
+
 namespace {
 
 /// Settings that contradict the scene or each other. Throws InputError.
@@ -210,17 +220,16 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
-  Body body =
-      make_body(problem, request.h, request.perturb, request.seed, cells(settings), executor);
-  divide(body, problem, settings);
+  Body body = make_particles(problem, request, settings, executor);
   std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
+  if (model->fracturing() == nullptr) scene::refuse_fracture(problem, m_info.name);
   const Constraints constraints(problem, body);
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, *model);
   const bool dissipative = model->viscous() || damped(problem, settings);
   Recorder recorder(problem, *model, constraints, executor, request.out, request.write_frames,
                     dissipative);
   result.h = request.h;
-  result.particles = body.n;
+  result.particles = body.bulk;
   result.unknowns = constraints.unknowns();
   result.threads = executor.threads();
   // Set-up is told as it is without a cache.

@@ -14,8 +14,9 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                    const std::filesystem::path& folder, bool frames, bool dissipative)
     : m_problem(problem), m_model(model), m_executor(executor),
       m_quantities(problem, model, constraints), m_hourglass(model.body()),
-      m_free(constraints.dofs().empty()), m_dissipative(dissipative) {
-  const ExternalLoads loads(problem, model.body());
+      m_free(constraints.dofs().empty()), m_dissipative(dissipative),
+      m_breaks(model.fracturing() != nullptr) {
+  const ExternalLoads loads(problem, model);
   m_steady = !loads.depend_on_time();
   m_unloaded = loads.none();
   if (folder.empty()) return;
@@ -30,17 +31,18 @@ std::vector<std::string> Recorder::columns() const {
                {"kinetic_energy_J", "internal_energy_J", "stabilisation_energy_J"});
   if (m_model.constitution().plastic()) names.emplace_back("plastic_work_J");
   if (m_dissipative) names.emplace_back("viscous_dissipation_J");
+  if (m_breaks) names.emplace_back("fracture_energy_J");
   names.insert(names.end(), {"external_work_J", "energy_balance_J"});
   for (const char axis : {'x', 'y', 'z'})
     names.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
   for (const char axis : {'x', 'y', 'z'})
     names.push_back(fmt::format("angular_momentum_{}_kg_m2_s", axis));
-  names.insert(names.end(), {"nonaffine_energy_share", "checkerboard"});
+  if (!m_breaks) names.insert(names.end(), {"nonaffine_energy_share", "checkerboard"});
   return names;
 }
 
 std::span<const Mat3> Recorder::gradients(const State& state) {
-  m_H.resize(m_model.body().n);
+  m_H.resize(m_model.body().bulk);
   m_model.gradients(state.u, m_H);
   return m_H;
 }
@@ -49,7 +51,7 @@ std::span<const Mat3> Recorder::gradients(const State& state) {
 void Recorder::add_motion(const State& state, Balance& b) const {
   if (state.v.empty()) return;
   const Body& body = m_model.body();
-  for (Index a = 0; a < body.n; ++a) {
+  for (Index a = 0; a < body.bulk; ++a) {
     const Vec3 v = vector_at(state.v, body, a);
     const Vec3 x = body.position(a) + vector_at(state.u, body, a), p = body.m[a] * v;
     const double speed = v.norm();
@@ -68,6 +70,7 @@ Balance Recorder::balance(const State& state) {
   b.plastic = e.plastic;
   b.stabilisation = e.stabilisation;
   b.dissipation = state.dissipation;
+  b.released = state.released;
   b.external_work = state.external_work;
   add_motion(state, b);
   return b;
@@ -98,17 +101,18 @@ void Recorder::row(const State& state) {
   m_any = true;
   const std::span<const Mat3> H = gradients(state);
   follow(b, state.impulse);
-  follow(b, m_hourglass.measure(state.u, H));
+  if (!m_breaks) follow(b, m_hourglass.measure(state.u, H));
   if (!m_history.active()) return;
   m_values.assign(1, state.t);
   m_quantities.append(state, H, m_values);
   m_values.insert(m_values.end(), {b.kinetic, b.internal, b.stabilisation});
   if (m_model.constitution().plastic()) m_values.push_back(b.plastic);
   if (m_dissipative) m_values.push_back(b.dissipation);
+  if (m_breaks) m_values.push_back(b.released);
   m_values.insert(m_values.end(), {b.external_work, b.total() - m_first.total()});
   m_values.insert(m_values.end(), b.linear.begin(), b.linear.end());
   m_values.insert(m_values.end(), b.angular.begin(), b.angular.end());
-  m_values.insert(m_values.end(), {m_share, m_checkerboard});
+  if (!m_breaks) m_values.insert(m_values.end(), {m_share, m_checkerboard});
   m_history.append(m_values);
 }
 
@@ -124,8 +128,8 @@ std::vector<std::pair<std::string, double>> Recorder::quantities(const State& st
 void Recorder::frame(const State& state) {
   if (!m_frames.active()) return;
   const Body& body = m_model.body();
-  std::vector<Vec3> x(body.n), u(body.n), v(body.n);
-  for (Index a = 0; a < body.n; ++a) {
+  std::vector<Vec3> x(body.bulk), u(body.bulk), v(body.bulk);
+  for (Index a = 0; a < body.bulk; ++a) {
     u[a] = vector_at(state.u, body, a);
     v[a] = vector_at(state.v, body, a);
     x[a] = body.position(a) + u[a];
@@ -133,6 +137,7 @@ void Recorder::frame(const State& state) {
   const auto flat = [](const std::vector<Vec3>& values) {
     return std::span<const double>(values.front().data(), 3 * values.size());
   };
+  const std::span<const double> volumes(body.V.data(), body.bulk);
   const std::span<const Mat3> H = gradients(state);
   std::vector<std::string> names{"von_mises", "pressure", "kirchhoff_mises"};
   if (m_model.constitution().plastic()) names.emplace_back("plastic_strain");
@@ -143,7 +148,7 @@ void Recorder::frame(const State& state) {
     values.push_back(m_quantities.displacement_error(state));
   }
   std::vector<scene::FrameField> fields{
-      {"displacement", 3, flat(u)}, {"velocity", 3, flat(v)}, {"volume", 1, body.V}};
+      {"displacement", 3, flat(u)}, {"velocity", 3, flat(v)}, {"volume", 1, volumes}};
   for (std::size_t k = 0; k < names.size(); ++k) fields.push_back({names[k], 1, values[k]});
   m_frames.write(state.t, x, fields);
 }
@@ -159,7 +164,7 @@ void Recorder::add_invariants(scene::Result& result, bool damped) const {
 }
 
 void Recorder::add_hourglass(scene::Result& result) const {
-  if (!m_any) return;
+  if (!m_any || m_breaks) return;
   result.quantities["nonaffine_energy_share"] = m_share;
   result.quantities["nonaffine_energy_share_max"] = m_share_max;
   if (m_energy_sum > 0)
@@ -172,13 +177,13 @@ scene::Samples Recorder::samples(const State& state) {
   const Body& body = m_model.body();
   scene::Samples s;
   const std::span<const Mat3> H = gradients(state);
-  for (Index a = 0; a < body.n; ++a) {
+  for (Index a = 0; a < body.bulk; ++a) {
     s.X.push_back(body.position(a));
     s.u.push_back(vector_at(state.u, body, a));
     if (!m_problem.is_static) s.v.push_back(vector_at(state.v, body, a));
     s.F.push_back(Mat3::Identity() + H[a]);
   }
-  s.weight = body.V;
+  s.weight.assign(body.V.begin(), body.V.begin() + body.bulk);
   return s;
 }
 

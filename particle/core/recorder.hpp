@@ -14,12 +14,12 @@ namespace concord::particle {
 /// Energies and momenta of a state.
 struct Balance {
   double kinetic = 0, internal = 0, plastic = 0, stabilisation = 0;  ///< [J]
-  double dissipation = 0, external_work = 0;                         ///< since the start [J]
+  double dissipation = 0, released = 0, external_work = 0;           ///< since the start [J]
   Vec3 linear = Vec3::Zero(),
        angular = Vec3::Zero();                 ///< sum m v [kg m/s], sum m x times v [kg m^2/s]
   double linear_scale = 0, angular_scale = 0;  ///< sum m |v|, sum m |x| |v|
   double stored() const { return kinetic + internal + plastic + stabilisation; }
-  double total() const { return stored() + dissipation - external_work; }
+  double total() const { return stored() + dissipation + released - external_work; }
 };
 
 class Recorder {
@@ -46,7 +46,8 @@ class Recorder {
   void add_invariants(scene::Result& result, bool damped = false) const;
   /// Adds nonaffine_energy_share and checkerboard of the last row, their largest values
   /// (.._max), and the share of the energies summed over the rows
-  /// (nonaffine_energy_share_mean).
+  /// (nonaffine_energy_share_mean). Nothing where bonds can break: across a crack it would
+  /// measure the opening.
   void add_hourglass(scene::Result& result) const;
 
   /// Samples (particles with volumes) of a state.
@@ -67,7 +68,7 @@ class Recorder {
   Quantities m_quantities;
   Hourglass m_hourglass;
   bool m_free, m_steady, m_unloaded;  ///< no displacement condition; constant loads; no loads
-  bool m_dissipative;
+  bool m_dissipative, m_breaks;
   scene::HistoryWriter m_history;
   scene::FrameWriter m_frames;
   std::vector<Mat3> m_H;

@@ -16,6 +16,7 @@ struct State {
   std::span<const double> acceleration;  ///< empty in static runs
   double external_work = 0;     ///< done since the start by loads and prescribed motion [J]
   double dissipation = 0;       ///< taken since the start by viscosity and mass damping [J]
+  double released = 0;          ///< taken since the start by the deletion of bonds [J]
   Vec3 impulse = Vec3::Zero();  ///< of the loads that never change, since the start [kg m/s]
 };
 

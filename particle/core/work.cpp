@@ -98,6 +98,11 @@ void Dissipation::before(double t, std::span<const double> u, std::span<const do
                          std::span<const double> f) {
   m_v.assign(v.begin(), v.end());
   if (!m_viscous) return;
+  if (Fracturing* fracturing = m_model.fracturing()) {  // keeps the viscous part by itself
+    const std::span<const double> part = fracturing->viscous_forces();
+    m_force.assign(part.begin(), part.end());
+    return;
+  }
   m_model.forces(u, m_rest, m_force, m_executor);
   m_loads.add(t, m_force);
   for (std::size_t k = 0; k < f.size(); ++k) m_force[k] = f[k] - m_force[k];

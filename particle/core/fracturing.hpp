@@ -1,0 +1,49 @@
+#pragma once
+// What the integrator and the recorder need of a model whose bonds can break.
+
+#include "particle/core/parallel.hpp"
+
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace concord::particle {
+
+/// A bond that the criterion broke.
+struct BrokenBond {
+  double t;  ///< [s]
+  Index a, b;
+};
+
+/// What has broken so far.
+struct FractureRecord {
+  static constexpr double never = std::numeric_limits<double>::infinity(),
+                          before_start = -std::numeric_limits<double>::infinity();
+  std::vector<BrokenBond> broken;  ///< in the order of their times
+  std::vector<double> death;       ///< of every simplex of the body [s]: never, before_start
+                                   ///< for those that a pre-crack took
+  double released = 0;  ///< energy that deletion took, with its effect on the step's kick [J]
+};
+
+/// A force model that can break is one of these too (ForceModel::fracturing).
+class Fracturing {
+ public:
+  virtual ~Fracturing() = default;
+
+  /// After the step dt v that led to u at time t (dt = 0: at the start): removes what meets the
+  /// criterion at u, then gives the forces, as ForceModel::forces. Throws BadState.
+  virtual void advance(double t, double dt, std::span<const double> u,
+                       std::span<const double> v, std::span<double> f,
+                       const Executor& executor) = 0;
+
+  /// The viscous part of the forces that the last advance() gave [N]; empty without viscosity.
+  virtual std::span<const double> viscous_forces() const = 0;
+
+  virtual const FractureRecord& record() const = 0;
+
+  /// Averaging volume over the volume at the start, of every particle: 1 where nothing is
+  /// missing, 0 for an isolated particle.
+  virtual void intact_share(std::span<double> share) const = 0;
+};
+
+}  // namespace concord::particle
