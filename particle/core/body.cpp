@@ -1,13 +1,12 @@
 #include "particle/core/body.hpp"
 
 #include "particle/core/body_cache.hpp"
+#include "particle/core/sweep_order.hpp"
 #include "scene/mesh_parts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -15,50 +14,14 @@
 namespace concord::particle {
 namespace {
 
-/// Axes of the mesh, longest first.
-std::array<int, 3> axes_by_length(const scene::Mesh& mesh, const Vec3& size) {
-  std::array<int, 3> axis{0, 1, 2};
-  std::stable_sort(axis.begin(), axis.begin() + mesh.dim,
-                   [&](int i, int j) { return size[i] > 1.0001 * size[j]; });
-  return axis;
-}
-
-/// Numbers of the nodes in sweep order: counted into rows of thickness about h, rows sorted by
-/// place.
-std::vector<Index> sweep_order(const scene::Mesh& mesh, const Executor& executor) {
+/// Numbers of the nodes in sweep order.
+std::vector<Index> node_order(const scene::Mesh& mesh, const Executor& executor) {
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (const Vec3& X : mesh.nodes) {
     low = low.cwiseMin(X);
     high = high.cwiseMax(X);
   }
-  const std::array<int, 3> axis = axes_by_length(mesh, high - low);
-  const auto layer = [&](int i, const Vec3& X) {
-    return static_cast<std::size_t>(std::lround((X[axis[i]] - low[axis[i]]) / mesh.h));
-  };
-  const std::size_t per_slab = mesh.dim == 3 ? layer(1, high) + 1 : 1;
-  const auto row_of = [&](std::size_t a) {
-    const Vec3& X = mesh.nodes[a];
-    return layer(0, X) * per_slab + (mesh.dim == 3 ? layer(1, X) : 0);
-  };
-  std::vector<Index> begin((layer(0, high) + 1) * per_slab + 1, 0), order(mesh.nodes.size());
-  for (std::size_t a = 0; a < order.size(); ++a) ++begin[row_of(a) + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Index> next(begin.begin(), begin.end() - 1);
-  for (std::size_t a = 0; a < order.size(); ++a)
-    order[next[row_of(a)]++] = static_cast<Index>(a);
-  const int along = axis[mesh.dim - 1];
-  constexpr std::size_t rows_at_once = 256;
-  executor.for_each((next.size() + rows_at_once - 1) / rows_at_once, [&](std::size_t k) {
-    const std::size_t last = std::min(next.size(), (k + 1) * rows_at_once);
-    for (std::size_t row = k * rows_at_once; row < last; ++row) {
-      std::sort(order.begin() + begin[row], order.begin() + begin[row + 1],
-                [&](Index a, Index b) {
-                  const double X_a = mesh.nodes[a][along], X_b = mesh.nodes[b][along];
-                  return X_a < X_b || (X_a == X_b && a < b);
-                });
-    }
-  });
-  return order;
+  return sweep_order(mesh.dim, mesh.h, mesh.nodes, low, high, executor);
 }
 
 /// V_a and the shortest edge, from the triangulation.
@@ -86,9 +49,8 @@ void measure(Body& body, const Executor& executor) {
   for (const double least : shortest) body.h_min = std::min(body.h_min, std::sqrt(least));
 }
 
-/// The particles' arrangement. Only its nodes and surface matter to Delaunay cells; hexahedra
-/// give a lattice's with a sixth of the elements. A lattice that gmsh cannot fill with them
-/// comes as simplices.
+}  // namespace
+
 scene::Mesh arrangement(const scene::Problem& problem, double h, CellSource cells) {
   scene::MeshRequest request;
   request.h = h;
@@ -105,6 +67,8 @@ scene::Mesh arrangement(const scene::Problem& problem, double h, CellSource cell
   }
 }
 
+namespace {
+
 /// Gives memory that was set free back to the system: gmsh's many small pieces would stay, and
 /// columns too once the threshold above which glibc maps pages for them has risen.
 void return_free_memory() {
@@ -120,7 +84,7 @@ void complete(const scene::Problem& problem, Body& body, const Executor& executo
   const scene::Mesh& mesh = body.mesh;
   body.dim = mesh.dim;
   body.stride = stride_of(mesh.dim);
-  body.n = static_cast<Index>(mesh.nodes.size());
+  body.n = body.bulk = static_cast<Index>(mesh.nodes.size());
   body.h = mesh.h;
   body.thickness = problem.thickness;
   body.particle.resize(body.n);
@@ -138,7 +102,7 @@ void complete(const scene::Problem& problem, Body& body, const Executor& executo
 /// Node order and triangulation.
 void divide(const scene::Problem& problem, CellSource cells, Body& body,
             const Executor& executor) {
-  body.node = sweep_order(body.mesh, executor);
+  body.node = node_order(body.mesh, executor);
   std::vector<Index> particle(body.node.size());
   for (std::size_t a = 0; a < particle.size(); ++a)
     particle[body.node[a]] = static_cast<Index>(a);

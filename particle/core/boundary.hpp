@@ -1,24 +1,38 @@
 #pragma once
 // Displacement conditions and external loads of a problem on the particles of a body.
 
-#include "particle/core/body.hpp"
+#include "particle/core/force_model.hpp"
 
+#include <array>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace concord::particle {
 
-/// One displacement component of one particle that a boundary condition prescribes.
+/// One displacement component of one point that a boundary condition prescribes.
 struct PrescribedDof {
-  Index particle;
+  Index particle;  ///< point: a particle or a boundary point
   int component;
-  Index condition;  ///< index into Problem::boundaries
+  Index condition;  ///< index into Problem::boundaries; -1: a boundary point's free component
   Vec3 normal;      ///< outward unit normal, for conditions that need it
 };
 
-/// Prescribed displacements. Particles lie on the faces: a symmetric plane prescribes the
-/// normal component, an antisymmetric one the tangential components.
+/// Which components a displacement condition prescribes on its group; none in a traction.
+/// Throws InputError where a plane of symmetry is none.
+std::array<bool, 3> prescribed_components(const scene::BoundaryCondition& bc,
+                                          const scene::Mesh& mesh);
+
+/// The points of a body that lie in a group, one entry a point. Where particles lie inside, a
+/// face of the body has those whose cells it bounds, and the boundary points on it. Throws
+/// InputError for missing groups, and for groups that then have no points.
+std::vector<char> points_of_group(const Body& body, const std::string& group,
+                                  const SourcePosition& where);
+
+/// Prescribed displacements. Where particles lie on the faces, a symmetric plane prescribes the
+/// normal component, an antisymmetric one the tangential components; where they lie inside, the
+/// boundary points are prescribed, their free components as 0, which nothing reads.
 class Constraints {
  public:
   /// Throws InputError for groups of the wrong kind and where two conditions prescribe
@@ -34,30 +48,34 @@ class Constraints {
   void impose(double t, std::span<double> u) const;
   /// Zeroes the prescribed components of a column (forces, initial velocity).
   void clear(std::span<double> column) const;
-  /// Number of displacement components left free.
+  /// Number of the particles' displacement components left free.
   long unknowns() const {
     return static_cast<long>(m_body.n) * m_body.dim - static_cast<long>(m_dofs.size());
   }
 
  private:
+  void find_on_faces();
+  void find_inside();
+
   const scene::Problem& m_problem;
   const Body& m_body;
-  std::vector<PrescribedDof> m_dofs;
+  std::vector<PrescribedDof> m_dofs;  ///< by point, then component
   bool m_moving = false;
 };
 
 /// External forces: gravity (21), body force V_b b(X_b, t), and nominal traction, (A_beta / n)
 /// T a vertex of each facet, the lumping with which patch test C is exact (the boundary sums of
-/// B_ab are A_beta/n).
+/// B_ab are A_beta/n); where particles lie inside, by the formulation's LoadTerms.
 class ExternalLoads {
  public:
-  ExternalLoads(const scene::Problem& problem, const Body& body);
+  ExternalLoads(const scene::Problem& problem, const ForceModel& model);
 
   bool none() const {
-    return m_constant_dense.empty() && m_constant.empty() && m_varying.empty() &&
-           !m_varying_body;
+    return m_constant_dense.empty() && m_constant.empty() && !depend_on_time();
   }
-  bool depend_on_time() const { return !m_varying.empty() || m_varying_body; }
+  bool depend_on_time() const {
+    return !m_varying.empty() || !m_terms.empty() || m_varying_body;
+  }
   /// Adds the loads at time t to f.
   void add(double t, std::span<double> f) const {
     add_constant(f);
@@ -68,14 +86,18 @@ class ExternalLoads {
   void add_constant(std::span<double> f) const;
   void add_varying(double t, std::span<double> f) const;
   bool any_constant() const { return !m_constant_dense.empty() || !m_constant.empty(); }
-  /// Particles on which time-dependent loads act, sorted.
+  /// Points on which time-dependent loads act, sorted.
   std::vector<Index> varying_particles() const;
-  /// Adds reference area vectors' share of every particle in a group: used for averages. Pairs
-  /// (particle, area).
+  /// Shares of every particle on the faces of a group in its area, for averages: pairs
+  /// (particle, area). Where particles lie on the faces.
   static std::vector<std::pair<Index, double>>
   group_areas(const Body& body, const std::string& group, const SourcePosition& where);
 
  private:
+  using Sums = std::map<Index, Vec3>;
+  void add_facet_loads(Index condition, Sums& constant);
+  void add_terms(const std::vector<LoadTerm>& terms, Sums& constant);
+  void add_terms_at(double t, std::span<double> f) const;
   struct Entry {
     Index particle;
     Index condition;
@@ -87,8 +109,9 @@ class ExternalLoads {
   const scene::Problem& m_problem;
   const Body& m_body;
   Column m_constant_dense;                         ///< gravity and constant body force
-  std::vector<std::pair<Index, Vec3>> m_constant;  ///< constant tractions, a particle
+  std::vector<std::pair<Index, Vec3>> m_constant;  ///< constant tractions, a point
   std::vector<Entry> m_varying;
+  std::vector<LoadTerm> m_terms;  ///< varying ones
   bool m_varying_body = false;
 };
 

@@ -9,14 +9,6 @@
 namespace concord::particle {
 namespace {
 
-Body divided_body(const ParticleMethod& method, const scene::Problem& problem,
-                  const scene::RunRequest& request, const scene::Settings& settings) {
-  Body body =
-      make_body(problem, request.h, request.perturb, request.seed, method.cells(settings));
-  method.divide(body, problem, settings);
-  return body;
-}
-
 SolveError solve_error(const BadState& bad) { return {bad.quantity, 0, 0, bad.particle}; }
 
 }  // namespace
@@ -24,20 +16,26 @@ SolveError solve_error(const BadState& bad) { return {bad.quantity, 0, 0, bad.pa
 ParticleBody::ParticleBody(const ParticleMethod& method, const scene::Problem& problem,
                            const scene::RunRequest& request)
     : m_settings(method.info().name, method.info().parameters, request.settings),
-      m_executor(request.threads), m_body(divided_body(method, problem, request, m_settings)),
+      m_executor(request.threads), 
+      m_body(method.make_particles(problem, request, m_settings, m_executor)),
       m_model(method.make_model(m_body, problem, m_settings, m_executor)),
       m_constraints(problem, m_body) {
-  for (Index a = 0; a < m_body.n; ++a) m_positions.push_back(m_body.position(a));
-  m_prescribed.assign(m_body.n, 0);
-  for (const PrescribedDof& dof : m_constraints.dofs())
-    m_prescribed[dof.particle] |= 1U << static_cast<unsigned>(dof.component);
+  for (Index a = 0; a < m_body.bulk; ++a) m_positions.push_back(m_body.position(a));
+  m_prescribed.assign(m_body.bulk, 0);
   m_u.assign(m_body.X.size(), 0.0);
   m_f = m_v = m_u;
+  for (const PrescribedDof& dof : m_constraints.dofs()) {
+    if (dof.particle < m_body.bulk)
+      m_prescribed[dof.particle] |= 1U << static_cast<unsigned>(dof.component);
+    else
+      m_u[static_cast<std::size_t>(dof.particle) * m_body.stride + dof.component] =
+          m_constraints.value(dof, 0);
+  }
 }
 
 const Column& ParticleBody::column(std::span<const double> u) {
   const int dim = m_body.dim, stride = m_body.stride;
-  for (Index a = 0; a < m_body.n; ++a) {
+  for (Index a = 0; a < m_body.bulk; ++a) {
     for (int i = 0; i < dim; ++i)
       m_u[static_cast<std::size_t>(a) * stride + i] = u[static_cast<std::size_t>(a) * dim + i];
   }
@@ -51,7 +49,7 @@ void ParticleBody::force(std::span<const double> u, std::span<double> f) {
     throw solve_error(bad);
   }
   const int dim = m_body.dim, stride = m_body.stride;
-  for (Index a = 0; a < m_body.n; ++a) {
+  for (Index a = 0; a < m_body.bulk; ++a) {
     for (int i = 0; i < dim; ++i)
       f[static_cast<std::size_t>(a) * dim + i] = m_f[static_cast<std::size_t>(a) * stride + i];
   }
@@ -63,9 +61,9 @@ double ParticleBody::energy(std::span<const double> u) {
 }
 
 void ParticleBody::pressure(std::span<const double> u, std::span<double> p) {
-  std::vector<Mat3> H(m_body.n);
+  std::vector<Mat3> H(m_body.bulk);
   m_model->gradients(column(u), H);
-  for (Index a = 0; a < m_body.n; ++a) {
+  for (Index a = 0; a < m_body.bulk; ++a) {
     const Mat3 F = Mat3::Identity() + H[a];
     p[a] = -(m_model->constitution().stress(a, H[a]) * F.transpose()).trace() /
            (3 * F.determinant());
@@ -73,7 +71,9 @@ void ParticleBody::pressure(std::span<const double> u, std::span<double> p) {
 }
 
 Eigen::SparseMatrix<double> ParticleBody::stiffness(std::span<const double> u) {
-  return m_model->tangent(column(u));
+  const Eigen::SparseMatrix<double> K = m_model->tangent(column(u));
+  const Eigen::Index unknowns = static_cast<Eigen::Index>(m_body.bulk) * m_body.dim;
+  return K.topLeftCorner(unknowns, unknowns);
 }
 
 double ParticleBody::critical_step(std::span<const double> u) {

@@ -7,8 +7,9 @@
 
 namespace concord::particle {
 
-/// Body, model and constraints of one method; points are particles. Plastic materials answer
-/// from their virgin state at every call, since nothing is committed.
+/// Body, model and constraints of one method; points are particles. Boundary points, where a
+/// method has them, stay where the scene wants them at t = 0. Plastic materials answer from
+/// their virgin state at every call, since nothing is committed.
 class ParticleBody final : public scene::DiscreteBody {
  public:
   /// As run() makes them. Throws InputError. `problem` must outlive the object.
@@ -17,7 +18,9 @@ class ParticleBody final : public scene::DiscreteBody {
 
   int dim() const override { return m_body.dim; }
   std::span<const Vec3> positions() const override { return m_positions; }
-  std::span<const double> masses() const override { return m_body.m; }
+  std::span<const double> masses() const override {
+    return {m_body.m.data(), static_cast<std::size_t>(m_body.bulk)};
+  }
   unsigned prescribed(Index point) const override { return m_prescribed[point]; }
   void force(std::span<const double> u, std::span<double> f) override;
   double energy(std::span<const double> u) override;

@@ -10,10 +10,10 @@ struct Incidence {
   std::vector<std::size_t> begin;
   std::vector<Index> simplex;
 
-  explicit Incidence(const Body& body) : begin(body.n + 1, 0) {
+  explicit Incidence(const Body& body) : begin(body.bulk + 1, 0) {
     const std::vector<Index>& vertices = body.triangulation.simplices;
     for (const Index a : vertices) ++begin[a + 1];
-    for (Index a = 0; a < body.n; ++a) begin[a + 1] += begin[a];
+    for (Index a = 0; a < body.bulk; ++a) begin[a + 1] += begin[a];
     simplex.resize(vertices.size());
     std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
     const std::size_t per_simplex = body.triangulation.dim + 1;
@@ -30,10 +30,10 @@ Edges make_edges(const Body& body) {
   const double share = body.thickness / (0.5 * vertices * t.dim);  // of a simplex, an edge
   const Incidence around(body);
   Edges edges;
-  edges.begin.reserve(body.n + 1);
+  edges.begin.reserve(body.bulk + 1);
   edges.begin.push_back(0);
   std::vector<std::pair<Index, double>> row;
-  for (Index a = 0; a < body.n; ++a) {
+  for (Index a = 0; a < body.bulk; ++a) {
     row.clear();
     for (std::size_t k = around.begin[a]; k < around.begin[a + 1]; ++k) {
       const Index s = around.simplex[k];

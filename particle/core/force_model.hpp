@@ -13,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace concord::particle {
 
@@ -36,13 +37,23 @@ struct Energies {
       0;  ///< contact energy (15) or penalty energy; 0 where the stabilisation has no potential
 };
 
+/// What a nominal traction on one piece of the surface adds to the force on one point: M T(X, t)
+/// [N]. For formulations whose particles lie inside the body.
+struct LoadTerm {
+  Index point;            ///< particle or boundary point
+  Index condition;        ///< of the traction, index into Problem::boundaries
+  Mat3 M = Mat3::Zero();  ///< [m^2]
+  Vec3 X, N;              ///< the piece's centroid [m] and outward unit normal
+};
+
 /// Forces of one formulation on one body. State is the displacement u = x - X (and velocity v),
 /// not the position: H = F - I then has no cancellation, and small strains keep their relative
-/// accuracy.
+/// accuracy. Columns are over all points of the body; on boundary points u is what the scene
+/// prescribes there (0 for free components) and f what this costs, -dW/du.
 class ForceModel {
  public:
   ForceModel(const Body& body, const scene::Problem& problem)
-      : m_body(body), m_constitution(problem, body.n) {}
+      : m_body(body), m_constitution(problem, body.bulk) {}
   virtual ~ForceModel() = default;
   ForceModel(const ForceModel&) = delete;
   ForceModel& operator=(const ForceModel&) = delete;
@@ -86,14 +97,18 @@ class ForceModel {
   /// Energies at displacement u.
   virtual Energies energies(std::span<const double> u, const Executor& executor) = 0;
 
-  /// Displacement gradients H_a = F_a - I at u, one a particle; in plane stress H_33 follows
-  /// from P_33 = 0.
+  /// Displacement gradients H_a = F_a - I at u, one a particle (bulk of them); in plane stress
+  /// H_33 follows from P_33 = 0.
   virtual void gradients(std::span<const double> u, std::span<Mat3> H) = 0;
 
   using Stiffness = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  /// K = -df/du (without viscosity) over dim*n unknowns (particle*dim + component) at u [N/m];
+  /// K = -df/du (without viscosity) over dim*n unknowns (point*dim + component) at u [N/m];
   /// consistent with the return mapping. Structurally symmetric; valid until the next call.
   virtual const Stiffness& tangent(std::span<const double> u) = 0;
+
+  /// How tractions act, where particles lie inside the body; else they act on the particles of
+  /// the faces, and this is not asked for. Terms of one piece stand together.
+  virtual const std::vector<LoadTerm>& load_terms() const;
 
   /// Whether the force is the gradient of a potential, so that the tangent is symmetric.
   virtual bool has_potential() const { return true; }
@@ -116,14 +131,14 @@ class ForceModel {
   /// Adds sum V_a U(H_a) and the plastic work; gradient(a) gives H_a.
   template <class G>
   void add_internal_energy(Energies& e, const Executor& executor, const G& gradient) const {
-    e.internal += executor.sum(m_body.n, [&](std::size_t begin, std::size_t end) {
+    e.internal += executor.sum(m_body.bulk, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (auto a = static_cast<Index>(begin); a < static_cast<Index>(end); ++a)
         sum += m_body.V[a] * m_constitution.energy(a, gradient(a)).stored;
       return sum;
     });
     if (!m_constitution.plastic()) return;
-    e.plastic += executor.sum(m_body.n, [&](std::size_t begin, std::size_t end) {
+    e.plastic += executor.sum(m_body.bulk, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (auto a = static_cast<Index>(begin); a < static_cast<Index>(end); ++a)
         sum += m_body.V[a] * m_constitution.energy(a, gradient(a)).plastic;
@@ -138,6 +153,11 @@ class ForceModel {
 inline void ForceModel::forces_of(std::span<const ParticleRange>, std::span<const double>,
                                   std::span<const double>, std::span<double>, const Executor&) {
   throw std::logic_error("forces_of() of a model without parts");
+}
+
+inline const std::vector<LoadTerm>& ForceModel::load_terms() const {
+  static const std::vector<LoadTerm> none;
+  return none;
 }
 
 inline ParticleRange ForceModel::reach(ParticleRange) const { return {0, m_body.n}; }

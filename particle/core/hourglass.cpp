@@ -25,7 +25,7 @@ double Roughness::checkerboard() const {
 }
 
 Roughness Hourglass::measure(std::span<const double> u, std::span<const Mat3> H) {
-  const Index n = m_body.n;
+  const Index n = m_body.bulk;
   if (m_edges.begin.empty()) {
     m_edges = make_edges(m_body);
     m_weight.assign(n, 0.0);

@@ -23,6 +23,11 @@ class ParticleMethod : public scene::Method, public scene::Discretises {
   std::unique_ptr<scene::DiscreteBody> discretise(const scene::Problem& problem,
                                                   const scene::RunRequest& request) const final;
 
+  /// The body as this formulation divides it: by default make_body's with these cells, and
+  /// divide(). Throws InputError.
+  virtual Body make_particles(const scene::Problem& problem, const scene::RunRequest& request,
+                              const scene::Settings& settings, const Executor& executor) const;
+
   /// Which cells lie between the particles of this formulation.
   virtual CellSource cells(const scene::Settings& settings) const;
 

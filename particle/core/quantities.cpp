@@ -29,6 +29,20 @@ std::string unit_suffix(const scene::Quantity& q) {
   return q.field == "unbalanced_force" ? "_N" : "_m";
 }
 
+/// The pieces of the surface on a group of faces, with their areas.
+std::vector<std::pair<Index, double>> piece_areas(const Body& body, const std::string& group,
+                                                  const SourcePosition& where) {
+  (void)body.mesh.group_facets(group, where);  // reports what is no group of faces
+  const std::vector<Index>& entities = body.mesh.groups.at(group).entities;
+  std::vector<std::pair<Index, double>> areas;
+  for (std::size_t k = 0; k < body.surface.size(); ++k) {
+    const SurfacePiece& piece = body.surface[k];
+    if (std::find(entities.begin(), entities.end(), piece.entity) != entities.end())
+      areas.emplace_back(static_cast<Index>(k), piece.area);
+  }
+  return areas;
+}
+
 }  // namespace
 
 std::vector<double> material_field(const ForceModel& model, std::span<const Mat3> H,
@@ -67,15 +81,12 @@ Quantities::Place Quantities::find_place(const scene::Quantity& q) const {
   const Body& body = m_model.body();
   Place place;
   place.quantity = &q;
-  std::vector<char> inside(body.n, q.group.empty() ? 1 : 0);
-  if (!q.group.empty()) {
-    for (const Index node : body.mesh.group_nodes(q.group, q.where))
-      inside[body.particle[node]] = 1;
-  }
+  const std::vector<char> inside =
+      q.group.empty() ? std::vector<char>(body.n, 1) : points_of_group(body, q.group, q.where);
   switch (q.kind) {
     case scene::QuantityKind::point: {
       double distance = 1e300;
-      for (Index a = 0; a < body.n; ++a) {
+      for (Index a = 0; a < body.bulk; ++a) {
         const double d = (body.position(a) - q.at).squaredNorm();
         if (d < distance) distance = d, place.nearest = a;
       }
@@ -84,7 +95,8 @@ Quantities::Place Quantities::find_place(const scene::Quantity& q) const {
       break;
     }
     case scene::QuantityKind::average:
-      place.areas = ExternalLoads::group_areas(body, q.group, q.where);
+      place.areas = body.inside() ? piece_areas(body, q.group, q.where)
+                                  : ExternalLoads::group_areas(body, q.group, q.where);
       for (const auto& [a, share] : place.areas) place.area += share;
       break;
     case scene::QuantityKind::reaction:
@@ -93,7 +105,7 @@ Quantities::Place Quantities::find_place(const scene::Quantity& q) const {
       }
       break;
     case scene::QuantityKind::maximum:
-      for (Index a = 0; a < body.n; ++a) {
+      for (Index a = 0; a < body.bulk; ++a) {
         if (inside[a] && !(q.interior_only && body.triangulation.on_boundary[a]))
           place.particles.push_back(a);
       }
@@ -125,7 +137,8 @@ Vec3 Quantities::vector_value(const Place& place, const State& state,
     return sum;
   }
   for (const auto& [a, share] : place.areas)
-    sum += share / place.area * vector_at(state.u, body, a);
+    sum += share / place.area *
+           (body.inside() ? at_face(body.surface[a], state, H) : vector_at(state.u, body, a));
   // The constraint force that keeps the group moving as prescribed: R = m a - f on prescribed
   // components.
   for (const PrescribedDof& dof : place.dofs) {
@@ -134,6 +147,18 @@ Vec3 Quantities::vector_value(const Place& place, const State& state,
                           vector_at(state.unbalanced, body, a)[dof.component];
   }
   return sum;
+}
+
+/// u at the centroid of a piece: what is prescribed there, the expansion of its particle else.
+Vec3 Quantities::at_face(const SurfacePiece& piece, const State& state,
+                         std::span<const Mat3> H) const {
+  const Body& body = m_model.body();
+  const Index a = piece.particle;
+  Vec3 u = vector_at(state.u, body, a) + H[a] * (piece.C - body.position(a));
+  for (int i = 0; i < body.dim; ++i) {
+    if (piece.condition[i] >= 0) u[i] = vector_at(state.u, body, piece.point)[i];
+  }
+  return u;
 }
 
 double Quantities::maximum(const Place& place, const State& state,
@@ -153,17 +178,19 @@ std::vector<double> Quantities::field(const std::string& name, const State& stat
   if (name == "displacement_error") return displacement_error(state);
   if (name != "displacement" && name != "velocity" && name != "unbalanced_force")
     return material_field(m_model, H, name);
-  std::vector<double> result(body.n);
+  std::vector<double> result(body.bulk);
   const std::span<const double> column = name == "displacement" ? state.u
                                          : name == "velocity"   ? state.v
                                                                 : state.unbalanced;
-  for (Index a = 0; a < body.n; ++a) result[a] = vector_at(column, body, a).norm();
+  for (Index a = 0; a < body.bulk; ++a) result[a] = vector_at(column, body, a).norm();
   if (name != "unbalanced_force") return result;
   // Forces on prescribed components are reactions; where everything is prescribed, they count.
-  std::vector<char> prescribed(body.n, 0);
-  for (const PrescribedDof& dof : m_constraints.dofs()) prescribed[dof.particle] = 1;
+  std::vector<char> prescribed(body.bulk, 0);
+  for (const PrescribedDof& dof : m_constraints.dofs()) {
+    if (dof.particle < body.bulk) prescribed[dof.particle] = 1;
+  }
   if (std::count(prescribed.begin(), prescribed.end(), 0) == 0) return result;
-  for (Index a = 0; a < body.n; ++a) {
+  for (Index a = 0; a < body.bulk; ++a) {
     if (prescribed[a]) result[a] = 0;
   }
   return result;
@@ -171,8 +198,8 @@ std::vector<double> Quantities::field(const std::string& name, const State& stat
 
 std::vector<double> Quantities::displacement_error(const State& state) const {
   const Body& body = m_model.body();
-  std::vector<double> result(body.n);
-  for (Index a = 0; a < body.n; ++a) {
+  std::vector<double> result(body.bulk);
+  for (Index a = 0; a < body.bulk; ++a) {
     const Vec3 exact = (*m_problem.exact_displacement)(body.position(a), state.t);
     result[a] = (vector_at(state.u, body, a) - exact).norm();
   }

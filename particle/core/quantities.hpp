@@ -35,13 +35,15 @@ class Quantities {
     const scene::Quantity* quantity;
     Index nearest = 0;           ///< point: particle there, or nearest
     Vec3 offset = Vec3::Zero();  ///< from that particle to the point, zero if it lies there [m]
-    std::vector<std::pair<Index, double>> areas;  ///< average: particles with their areas
+    std::vector<std::pair<Index, double>> areas;  ///< average: particles with their areas,
+                                                  ///< or pieces of the surface with theirs
     double area = 0;
     std::vector<PrescribedDof> dofs;  ///< reaction: prescribed components of the group
     std::vector<Index> particles;     ///< maximum: where it is sought
   };
   Place find_place(const scene::Quantity& quantity) const;
   Vec3 vector_value(const Place& place, const State& state, std::span<const Mat3> H) const;
+  Vec3 at_face(const SurfacePiece& piece, const State& state, std::span<const Mat3> H) const;
   double maximum(const Place& place, const State& state, std::span<const Mat3> H) const;
   std::vector<double> field(const std::string& name, const State& state,
                             std::span<const Mat3> H) const;

@@ -38,8 +38,8 @@ SpectralRadius::SpectralRadius(ForceModel& model, const Constraints& constraints
                                const Executor& executor)
     : m_model(model), m_constraints(constraints), m_executor(executor) {
   const Body& body = model.body();
-  m_root.resize(body.n);
-  for (Index a = 0; a < body.n; ++a) m_root[a] = std::sqrt(body.m[a]);
+  m_root.assign(body.n, 1.0);  // any number for boundary points, which do not move
+  for (Index a = 0; a < body.bulk; ++a) m_root[a] = std::sqrt(body.m[a]);
 }
 
 Column SpectralRadius::start() const {

@@ -30,6 +30,7 @@ int free_rigid_motions(const Body& body, const Constraints& constraints) {
   for (Index a = 0; a < body.n; ++a) size = std::max(size, (body.position(a) - centre).norm());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
   for (const PrescribedDof& dof : constraints.dofs()) {
+    if (dof.condition < 0) continue;  // a boundary point's free component
     const Vec3 r = (body.position(dof.particle) - centre) / size;
     Eigen::VectorXd motion = Eigen::VectorXd::Zero(count);
     motion[dof.component] = 1;

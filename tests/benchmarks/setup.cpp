@@ -83,7 +83,7 @@ void setup_model(benchmark::State& state) {
   for (auto _ : state) {
     const delaunay::DelaunayModel model(body, cube(), delaunay::Parameters{});
     const Constraints constraints(cube(), body);
-    const ExternalLoads loads(cube(), body);
+    const ExternalLoads loads(cube(), model);
     benchmark::DoNotOptimize(constraints.unknowns() + loads.none());
   }
   count(state, static_cast<std::size_t>(body.n));

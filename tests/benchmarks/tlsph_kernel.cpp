@@ -17,7 +17,7 @@ using namespace concord;
 /// SPH needs volumes alone.
 particle::Body lattice(int count) {
   particle::Body body;
-  body.n = count * count * count;
+  body.n = body.bulk = count * count * count;
   body.h = body.h_min = 1.0 / (count - 1);
   for (int k = 0; k < count; ++k) {
     for (int j = 0; j < count; ++j) {

@@ -58,7 +58,7 @@ using Tune = std::function<void(LeapfrogOptions&)>;
 void count_steps(const std::string& name, const scene::Problem& problem, const Body& body,
                  ForceModel& model, const Executor& executor, const Tune& tune) {
   const Constraints constraints(problem, body);
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, model);
   const auto run = [&](int steps) {
     Leapfrog integrator(problem, model, constraints, loads, executor);
     Recorder recorder(problem, model, constraints, executor, "", false);

@@ -52,8 +52,7 @@ struct Bench {
         const std::vector<scene::Override>& set = {}, double perturb = 0.25,
         std::uint64_t seed = 5)
       : problem(scene::read_problem(scene, set)),
-        body(divided(variant, problem,
-                     make_body(problem, problem.reference_length / resolution, perturb, seed))),
+        body(particles(variant, problem, resolution, perturb, seed)),
         model(make(variant)) {}
 
   static const ParticleMethod& method_of(const Variant& variant) {
@@ -62,6 +61,16 @@ struct Bench {
   }
   static scene::Settings settings_of(const Variant& variant) {
     return {variant.method, method_of(variant).info().parameters, variant.settings};
+  }
+  /// As the method's runs have them.
+  static Body particles(const Variant& variant, const scene::Problem& problem,
+                        double resolution, double perturb, std::uint64_t seed) {
+    scene::RunRequest request;
+    request.h = problem.reference_length / resolution;
+    request.perturb = perturb;
+    request.seed = seed;
+    return method_of(variant).make_particles(problem, request, settings_of(variant),
+                                             Executor(1));
   }
   /// With the volumes that the method wants.
   static Body divided(const Variant& variant, const scene::Problem& problem, Body body) {

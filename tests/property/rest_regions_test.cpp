@@ -17,7 +17,7 @@ struct Outcome {
 Outcome run(Bench& b, bool rest_regions, int threads, int steps, double ramp_time) {
   const Executor executor(threads);
   const Constraints constraints(b.problem, b.body);
-  const ExternalLoads loads(b.problem, b.body);
+  const ExternalLoads loads(b.problem, *b.model);
   Recorder recorder(b.problem, *b.model, constraints, executor, {}, false);
   Leapfrog leapfrog(b.problem, *b.model, constraints, loads, executor, ramp_time);
   LeapfrogOptions options;
@@ -76,7 +76,7 @@ TEST_P(EveryMethod, WaveFromAPulledEndFindsTheRestAsIfItHadBeenComputed) {
 TEST(RestRegions, MinusZeroIsNoRest) {
   Bench b({"delaunay", "delaunay", {}}, "cantilever", 8);
   const Constraints constraints(b.problem, b.body);
-  const ExternalLoads loads(b.problem, b.body);
+  const ExternalLoads loads(b.problem, *b.model);
   const Column zero = b.zeros();
   RestRegions still(*b.model, constraints, loads, zero, zero);
   EXPECT_TRUE(still.awake().empty());

@@ -55,7 +55,7 @@ Outcome run(double eta, double damping, double dt) {
   Dashpots model(body, problem, 3, eta);
   const Executor executor(1);
   const Constraints constraints(problem, body);
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, model);
   Recorder recorder(problem, model, constraints, executor, {}, false, true);
   Leapfrog leapfrog(problem, model, constraints, loads, executor);
   LeapfrogOptions options;

@@ -12,7 +12,7 @@ namespace {
 /// The triangle (0,0), (1,0), (0,1) with its three particles.
 Body triangle(double thickness = 1) {
   Body body;
-  body.dim = 2, body.stride = 2, body.n = 3, body.h = 1, body.thickness = thickness;
+  body.dim = 2, body.stride = 2, body.n = body.bulk = 3, body.h = 1, body.thickness = thickness;
   body.X = {0, 0, 1, 0, 0, 1};
   body.V.assign(3, thickness / 6);
   body.triangulation.dim = 2;
@@ -32,7 +32,7 @@ TEST(Edges, WeighTheirShareOfTheVolumeBySquaredLength) {
 
 TEST(Edges, OfTwoSimplicesAddUp) {
   Body body = triangle();
-  body.n = 4;
+  body.n = body.bulk = 4;
   body.X.insert(body.X.end(), {1, 1});
   body.triangulation.simplices = {0, 1, 2, 1, 3, 2};
   const Edges edges = make_edges(body);

@@ -61,7 +61,7 @@ double oscillate(double omega, double damping, double dt, double T) {
   Oscillators model(body, problem, k);
   const Executor executor(1);
   const Constraints constraints(problem, body);
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, model);
   Recorder recorder(problem, model, constraints, executor, {}, false);
   Leapfrog leapfrog(problem, model, constraints, loads, executor);
   LeapfrogOptions options;
@@ -136,7 +136,7 @@ TEST(Leapfrog, StopsAtNotANumberWithStepAndTime) {
   delaunay::DelaunayModel model(body, problem, {});
   const Executor executor(1);
   const Constraints constraints(problem, body);
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, model);
   Recorder recorder(problem, model, constraints, executor, {}, false);
   Leapfrog leapfrog(problem, model, constraints, loads, executor);
   LeapfrogOptions options;
@@ -178,7 +178,7 @@ TEST(Leapfrog, StopsWherePrescribedMotionIsNotANumber) {
   const Executor executor(1);
   const Constraints constraints(problem, body);
   ASSERT_TRUE(constraints.moving());
-  const ExternalLoads loads(problem, body);
+  const ExternalLoads loads(problem, model);
   const std::filesystem::path out = std::filesystem::path(testing::TempDir()) /
                                     ("concord-lost-" + std::to_string(::getpid()));
   std::filesystem::create_directories(out);
@@ -221,7 +221,7 @@ struct StaticRun {
   StaticRun(scene::Problem p, double resolution, double perturb)
       : problem(std::move(p)),
         body(make_body(problem, problem.reference_length / resolution, perturb, 2)),
-        model(body, problem, {}), constraints(problem, body), loads(problem, body),
+        model(body, problem, {}), constraints(problem, body), loads(problem, model),
         recorder(problem, model, constraints, executor, {}, false) {}
 
   State solve() {

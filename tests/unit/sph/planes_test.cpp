@@ -139,7 +139,7 @@ TEST_P(Planes, PartEqualsTheWhole) {
         }
         whole.V.push_back(parts[a] * part.V[a]);
         whole.m.push_back(parts[a] * part.m[a]);
-        ++whole.n;
+        ++whole.n, whole.bulk = whole.n;
       }
     }
     TlsphOptions with = mirrored(GetParam(), planes), without = mirrored(GetParam(), {});

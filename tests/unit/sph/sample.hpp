@@ -25,6 +25,7 @@ inline Body lattice(int dim, int count, double perturb) {
   body.thickness = dim == 2 ? 0.5 : 1;
   body.n = 1;
   for (int i = 0; i < dim; ++i) body.n *= count;
+  body.bulk = body.n;
   body.X.assign(static_cast<std::size_t>(body.n) * body.stride, 0.0);
   for (Index a = 0; a < body.n; ++a) {
     for (int i = 0, rest = a; i < dim; ++i, rest /= count) {
