@@ -1,0 +1,149 @@
+#include "particle/voronoi/ghosts.hpp"
+
+#include <Eigen/Dense>
+
+namespace concord::particle::voronoi {
+namespace {
+
+using Eigen::MatrixXd;
+
+/// Orthonormal basis of the range of a projection, as columns.
+MatrixXd basis_of(const Mat3& projection) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(projection);
+  int rank = 0;
+  for (int i = 0; i < 3; ++i) rank += eigen.eigenvalues()[i] > 0.5;
+  MatrixXd Q = eigen.eigenvectors().rightCols(rank);
+  // Axis-aligned projections get unit vectors without round-off, so that T stays diagonal.
+  Q = Q.unaryExpr([](double q) { return std::abs(q) < 1e-12 ? 0.0 : q; }).eval();
+  for (int k = 0; k < rank; ++k) Q.col(k).normalize();
+  return Q;
+}
+
+/// K_a (18) as (1 - H)^T (1 - H), H_cd = X_c.B_d / V_a; neighbours, then ghosts.
+MatrixXd kernel_matrix(const Star& star) {
+  const auto real = static_cast<Eigen::Index>(star.neighbours.size()),
+             all = real + static_cast<Eigen::Index>(star.ghosts.size());
+  MatrixXd X(all, 3), B(all, 3);
+  for (Eigen::Index c = 0; c < all; ++c) {
+    if (c < real) {
+      X.row(c) = star.neighbours[c].X.transpose();
+      B.row(c) = star.neighbours[c].gradient_vector().transpose();
+    } else {
+      X.row(c) = star.ghosts[c - real].X.transpose();
+      B.row(c) = star.ghosts[c - real].gradient_vector().transpose();
+    }
+  }
+  const MatrixXd rest = MatrixXd::Identity(all, all) - X * B.transpose() / star.V;
+  return rest.transpose() * rest;
+}
+
+/// The system with given bases of free components: T and R by (VOR.6); false if undetermined.
+bool solve(const Star& star, const MatrixXd& K, const std::vector<MatrixXd>& Q,
+           GhostSystem& system) {
+  const std::size_t real = star.neighbours.size(), ghosts = star.ghosts.size();
+  std::vector<Eigen::Index> first(ghosts + 1, 0);
+  for (std::size_t g = 0; g < ghosts; ++g) first[g + 1] = first[g] + Q[g].cols();
+  const Eigen::Index size = first[ghosts];
+  system.T.assign(ghosts * real, Mat3::Zero());
+  system.R.assign(ghosts * ghosts, Mat3::Zero());
+  for (std::size_t g = 0; g < ghosts; ++g) system.R[g * ghosts + g] = 2 * star.ghosts[g].D;
+  if (size == 0) return true;
+  const auto at = [&](std::size_t g) { return static_cast<Eigen::Index>(real + g); };
+  MatrixXd A(size, size);
+  for (std::size_t g = 0; g < ghosts; ++g) {
+    for (std::size_t h = 0; h < ghosts; ++h) {
+      A.block(first[g], first[h], Q[g].cols(), Q[h].cols()) =
+          K(at(g), at(h)) * Q[g].transpose() * Q[h];
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(A);
+  const double largest = std::max(1.0, eigen.eigenvalues()[size - 1]);
+  if (!(eigen.eigenvalues()[0] >= 1e-8 * largest)) return false;
+  const MatrixXd Z = A.ldlt().solve(MatrixXd::Identity(size, size));
+  for (std::size_t g = 0; g < ghosts; ++g) {
+    for (std::size_t h = 0; h < ghosts; ++h) {
+      const Mat3 QZQ =
+          Q[g] * Z.block(first[g], first[h], Q[g].cols(), Q[h].cols()) * Q[h].transpose();
+      for (std::size_t c = 0; c < real; ++c)
+        system.T[g * real + c] -= K(at(h), static_cast<Eigen::Index>(c)) * QZQ;
+      for (std::size_t k = 0; k < ghosts; ++k)
+        system.R[g * ghosts + k] -= 2 * K(at(h), at(k)) * QZQ * star.ghosts[k].D;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Vec3 offset_of(const Face& face, const Vec3& X_a, const Vec3& X_b) {
+  const Vec3 t = face.C - 0.5 * (X_a + X_b);
+  return t.norm() <= 1e-12 * (X_b - X_a).norm() ? Vec3::Zero() : t;
+}
+
+Stars::Stars(const Cells& cells, const Boundary& boundary, std::span<const Vec3> X)
+    : m_cells(cells), m_boundary(boundary), m_X(X) {
+  const Index n = particles();
+  m_begin.assign(n + 1, 0);
+  m_begin_wall.assign(n + 1, 0);
+  for (std::size_t f = 0; f < cells.interior; ++f)
+    ++m_begin[cells.faces[f].a + 1], ++m_begin[cells.faces[f].b + 1];
+  for (const BoundaryPiece& piece : boundary.pieces) ++m_begin_wall[piece.particle + 1];
+  for (Index a = 0; a < n; ++a)
+    m_begin[a + 1] += m_begin[a], m_begin_wall[a + 1] += m_begin_wall[a];
+  m_face.resize(m_begin[n]);
+  std::vector<Index> next(m_begin.begin(), m_begin.end() - 1);
+  // Faces come by (a, b), so those at b with lower a are met first, in order; then its own.
+  for (std::size_t f = 0; f < cells.interior; ++f)
+    m_face[next[cells.faces[f].b]++] = static_cast<Index>(f);
+  for (std::size_t f = 0; f < cells.interior; ++f)
+    m_face[next[cells.faces[f].a]++] = static_cast<Index>(f);
+}
+
+Star Stars::operator()(Index a) const {
+  Star star;
+  star.a = a;
+  star.V = m_cells.V[a];
+  for (Index k = m_begin[a]; k < m_begin[a + 1]; ++k) {
+    const Face& face = m_cells.faces[m_face[k]];
+    const Index b = face.a == a ? face.b : face.a;
+    star.neighbours.push_back(
+        {b, m_X[b] - m_X[a], offset_of(face, m_X[face.a], m_X[face.b]), face.A});
+  }
+  for (Index k = m_begin_wall[a]; k < m_begin_wall[a + 1]; ++k) {
+    const BoundaryPiece& piece = m_boundary.pieces[k];
+    const Face& face = m_cells.faces[piece.face];
+    const Wall& wall = m_cells.walls[face.wall];
+    const double distance = wall.offset - wall.N.dot(m_X[a]);
+    Ghost ghost;
+    ghost.N = wall.N;
+    ghost.X = 2 * distance * wall.N;
+    const Vec3 W = m_X[a] + distance * wall.N;
+    if (!coincide(face.C, W, distance)) ghost.t = face.C - W;
+    ghost.A = face.A;
+    ghost.D = piece.D;
+    ghost.free = Mat3::Identity() - piece.D;
+    if (m_cells.dim == 2) ghost.free(2, 2) = 0;
+    ghost.centroid_point = piece.centroid_point;
+    ghost.wall_point = piece.wall_point;
+    ghost.piece = k;
+    ghost.mirror = piece.mirror;
+    star.ghosts.push_back(ghost);
+  }
+  return star;
+}
+
+GhostSystem solve_ghosts(const Star& star) {
+  const MatrixXd K = kernel_matrix(star);
+  std::vector<MatrixXd> Q;
+  for (const Ghost& ghost : star.ghosts) Q.push_back(basis_of(ghost.free));
+  GhostSystem system;
+  if (solve(star, K, Q, system)) return system;
+  system.mirrored = true;
+  for (std::size_t g = 0; g < star.ghosts.size(); ++g) {
+    if (star.ghosts[g].mirror) Q[g].resize(3, 0);
+  }
+  system.determined = solve(star, K, Q, system);
+  return system;
+}
+
+}  // namespace concord::particle::voronoi

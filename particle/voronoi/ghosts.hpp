@@ -1,0 +1,80 @@
+#pragma once
+// Ghosts: mirror images of boundary particles behind the walls, whose current places follow
+// from prescribed displacements and, where free, from least squares (Sec. 2.4 of the paper),
+// here with the exact constrained minimiser.
+
+#include "particle/voronoi/boundary_pieces.hpp"
+
+#include <vector>
+
+namespace concord::particle::voronoi {
+
+/// One ghost g of a particle a: its wall piece as the formulas see it.
+struct Ghost {
+  Vec3 X = Vec3::Zero();      ///< X_ag = 2 (W_ag - X_a) [m]
+  Vec3 N = Vec3::Zero();      ///< outward unit normal
+  Vec3 t = Vec3::Zero();      ///< t_ag = C_ag - W_ag, zero where they count as one point [m]
+  double A = 0;               ///< A_ag [m^2]
+  Mat3 D = Mat3::Zero();      ///< D_ag (14)
+  Mat3 free = Mat3::Zero();   ///< I - D_ag; in the plane without the third direction
+  Index centroid_point = -1;  ///< point of the body with u(C_ag); -1 where D = 0
+  Index wall_point = -1;      ///< point of the body with u(W_ag)
+  bool mirror = false;        ///< may be a true mirror image
+  Index piece = -1;           ///< index into Boundary::pieces
+  double length() const { return X.norm(); }
+  Vec3 gradient_vector() const { return A / length() * (0.5 * X + t); }  ///< B_ag (7)
+};
+
+/// A neighbour that is a particle: t_ab = C_ab - (X_a + X_b)/2 is the same seen from a and b.
+struct Neighbour {
+  Index b = -1;
+  Vec3 X = Vec3::Zero();                                                 ///< X_ab [m]
+  Vec3 t = Vec3::Zero();                                                 ///< t_ab [m]
+  double A = 0;                                                          ///< A_ab [m^2]
+  Vec3 gradient_vector() const { return A / X.norm() * (0.5 * X + t); }  ///< B_ab (7)
+};
+
+/// A cell as its particle sees it, neighbours in ascending order.
+struct Star {
+  Index a = -1;
+  double V = 0;
+  std::vector<Neighbour> neighbours;
+  std::vector<Ghost> ghosts;
+};
+
+/// Stars of all particles, on demand.
+class Stars {
+ public:
+  /// Keeps references to its arguments.
+  Stars(const Cells& cells, const Boundary& boundary, std::span<const Vec3> X);
+  Star operator()(Index a) const;
+  bool at_wall(Index a) const { return m_begin_wall[a] < m_begin_wall[a + 1]; }
+  Index particles() const { return static_cast<Index>(m_cells.V.size()); }
+
+ private:
+  const Cells& m_cells;
+  const Boundary& m_boundary;
+  std::span<const Vec3> m_X;
+  std::vector<Index> m_begin, m_face;  ///< interior faces of each particle
+  std::vector<Index> m_begin_wall;     ///< pieces of each particle, in Boundary::pieces
+};
+
+/// t_ab of an interior face; zero below 1e-12 L_ab, which is round-off of the cells.
+Vec3 offset_of(const Face& face, const Vec3& X_a, const Vec3& X_b);
+
+/// Where the ghosts of one particle are: with u_ac = u_c - u_a and w_h = u(W_h) - u_a
+///   u_ag = sum_c T_gc u_ac + sum_h R_gh w_h                                        (VOR.6)
+struct GhostSystem {
+  std::vector<Mat3> T;  ///< ghosts x neighbours
+  std::vector<Mat3> R;  ///< ghosts x ghosts; R_gh = 2 S_gh D_h
+  bool determined = true;
+  bool mirrored = false;  ///< planes of symmetry had to be taken as true mirrors
+};
+
+/// Minimises sum_c |x_ac - F_a X_ac|^2 (15) over the free components of the ghosts. Where that
+/// does not determine them (smallest eigenvalue below 1e-8: those of K (18) are 0 or at least
+/// 1), ghosts behind planes of symmetry or antisymmetry become true mirror images, which have
+/// no free component; where that does not help either, `determined` is false.
+GhostSystem solve_ghosts(const Star& star);
+
+}  // namespace concord::particle::voronoi
