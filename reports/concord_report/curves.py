@@ -1,7 +1,7 @@
 """Plots of one history column against another: one line a run, such as a stress-strain curve."""
 
 from .balance import broken
-from .cases import chosen
+from .cases import chosen, variant_text
 from .digits import exact, grouped, pretty
 from .histories import pair
 from .kinds import capital, kind, scaled
@@ -32,19 +32,65 @@ def curve(study, cases, plot):
             lines.append({"case": -1 - len(lines), "method": case.method, "dash": style, "style": style,
                           "fade": max(0.35, 1 - 0.4 * round_), "x": x, "y": y, "rank": rank,
                           "label": run_label(case, level, row, len(levels) > 1), "low": None, "high": None, "slope": None, "broken": [broken(row)]})
+    lines += [line for entry in entries(plot, "baseline") for line in _compared(study, cases, entry, columns, len(lines))]
     if not lines:
         return f"no history.csv of this report has the columns {columns[0]} and {columns[1]}"
+    zero = ""
+    if plot.get("log"):
+        lines, zero = magnitudes(lines)
+        if not lines:
+            return f"on a logarithmic axis: {zero}"
     _mark(lines)
     lines, labels = _in_units(lines, plot, columns)
     ends = "; ".join(f"{c['label']} ends at {pretty(c['x'][-1])}, {pretty(c['y'][-1])}" for c in lines)
     inset = _window(plot.get("inset"), lines)
-    return {"scales": ["linear", "linear"], "xlabel": labels[0], "ylabel": labels[1], "curves": lines,
+    return {"scales": ["linear", "log" if plot.get("log") else "linear"], "xlabel": labels[0], "ylabel": labels[1],
+            "curves": lines + published(plot),
             "title": plot.get("title") or f"{capital(_name(labels[1]))} against {_name(labels[0])}",
             "note": " ".join(filter(None, (
-                "The stronger the line, the finer the run." if any(c["rank"] for c in lines) else "",
+                "The stronger the line, the finer the run." if any(c["rank"] for c in lines) else "", zero,
                 "No curve passes through the window of the inset." if plot.get("inset") and not inset else ""))),
             "inset": inset, "legend": True,
             "triangles": [], "alt": f"Plot of {labels[1]} against {labels[0]}. {ends}."}
+
+
+def entries(plot, key):
+    """The entries of a plot's list, which may be a single one."""
+    wanted = plot.get(key) or []
+    return [wanted] if isinstance(wanted, dict) else wanted
+
+
+def _compared(study, cases, entry, columns, drawn):
+    """Runs to compare with, broad and pale: the finest of each case, or the one at the entry's resolution."""
+    out = []
+    for case in chosen(cases, entry):
+        levels = [l for l in case.levels if not entry.get("resolution") or near(l.resolution, entry["resolution"])]
+        found = next(filter(None, (_line(study, row, columns) for l in levels[::-1] for row in l.rows)), None)
+        if found:
+            out.append({"case": -1 - drawn - len(out), "method": case.method, "dash": 0, "style": 0, "x": found[0], "y": found[1],
+                        "rank": 0, "label": variant_text(entry.get("label")) or case.label, "reference": True, "low": None,
+                        "high": None, "slope": None, "broken": [broken(found[2])]})
+    return out
+
+
+def published(plot):
+    """Values that a source gives, in the units drawn: markers without a line."""
+    return [{"case": -1001 - k, "method": "", "style": k, "x": p["x"], "y": p["y"], "label": variant_text(p["label"]),
+             "points": True, "low": None, "high": None, "slope": None, "broken": []}
+            for k, p in enumerate(entries(plot, "points"))]
+
+
+def magnitudes(lines):
+    """(the curves' absolute values, less those that are 0, which no logarithmic axis has; a sentence
+    that names the curves that are 0 throughout)."""
+    out, gone = [], []
+    for line in lines:
+        kept = [(x, abs(y)) for x, y in zip(line["x"], line["y"]) if y]
+        if kept:
+            out.append({**line, "x": [x for x, _ in kept], "y": [y for _, y in kept]})
+        else:
+            gone.append(line["label"])
+    return out, f"{' and '.join(gone)}: 0 throughout." if gone else ""
 
 
 def _window(wanted, lines):
@@ -69,7 +115,7 @@ def _window(wanted, lines):
 def _mark(lines):
     """Gives the finest line of each case a few markers, at places that no other line has, when several
     cases share a method's colour."""
-    finest = [c for c in lines if c["rank"] == 0]
+    finest = [c for c in lines if c["rank"] == 0 and not c.get("reference")]
     if len(finest) == len({c["method"] for c in finest}):
         return
     for number, line in enumerate(finest):

@@ -1,5 +1,6 @@
 """Draws a plot's specification (plots.py) with matplotlib. Imported only when the cache lacks it."""
 
+import functools
 import math
 
 import matplotlib
@@ -19,6 +20,7 @@ HEIGHT = 380
 BOTTOM, TOP = 50, 12
 AREA, BESIDE = 360, 330  # width of the axes beside labels, beside a legend; all in CSS pixels
 SAMPLE = 26  # length of a line in the legend
+PUBLISHED = ("D", "s", "^", "o")  # markers of values that a source gives
 LINE = 1.32  # height of a label's line, in font sizes
 PLAIN = 500  # width of a plot without labels
 
@@ -69,7 +71,9 @@ def draw(spec):
 def lines(axes, curves):
     """All curves; the finer of two levels lies above."""
     for number, curve in enumerate(curves):
-        if curve.get("baseline"):
+        if curve.get("points"):
+            _points(axes, curve, number)
+        elif curve.get("baseline"):
             _baseline(axes, curve, number)
         else:
             _line(axes, curve, number, _long(curve))
@@ -108,10 +112,11 @@ def _zero_tick(axes, at):
                   linewidth=0.9, **box)
 
 
+@functools.lru_cache(maxsize=None)
 def _width(words):
-    """Of a text in the drawing [CSS pixels]."""
+    """Of a text in the drawing [CSS pixels]. Its outline's exact extents would cost a hundred times as much."""
     from matplotlib.textpath import TextPath
-    return TextPath((0, 0), words, size=SIZE).get_extents().x1
+    return float(TextPath((0, 0), words, size=SIZE).vertices[:, 0].max(initial=0.0))
 
 
 def _tick_width(axes):
@@ -194,7 +199,9 @@ def _linear(axes, one, values, is_x, levels):
 
 
 def _hue(curve):
-    """Of the method, but where a plot has several columns of a run."""
+    """Of the method, but where a plot has several columns of a run; published values are in ink."""
+    if curve.get("points"):
+        return INK
     return colour(curve.get("hue", curve["method"]))
 
 
@@ -207,6 +214,9 @@ def _stroke(curve, sample=False):
     """What a curve's line looks like. Lines that may coincide carry a few markers, each its own
     places, so that each of them can be found."""
     rank, hue = curve.get("rank", 0), _hue(curve)
+    if curve.get("points"):
+        return {"linestyle": "none", "marker": PUBLISHED[curve["style"] % len(PUBLISHED)], "markersize": 8, "color": hue,
+                "markerfacecolor": PAPER, "markeredgecolor": hue, "markeredgewidth": 1.5}
     width = 1.7 if rank == 0 else 1.2
     look = {"color": hue, "linewidth": width, "linestyle": _dashes(curve, 1.7),
             "alpha": (1 if rank == 0 else max(0.35, 0.75 - 0.18 * rank)) * curve.get("fade", 1)}
@@ -243,6 +253,11 @@ def _line(axes, curve, number, long):
     if curve.get("left") and curve["left"] != curve["right"]:
         bars = axes.hlines(y, curve["left"], curve["right"], color=hue, linewidth=3.4, alpha=0.33, zorder=2)
         bars.set_gid(f"curve:{curve['case']}:{number}w")
+
+
+def _points(axes, curve, number):
+    marks, = axes.plot(curve["x"], curve["y"], zorder=4, clip_on=False, **_stroke(curve))
+    marks.set_gid(f"curve:{curve['case']}:{number}")
 
 
 def _baseline(axes, curve, number):

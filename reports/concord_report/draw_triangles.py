@@ -1,6 +1,7 @@
 """Slope triangles of log-log plots, placed where they cover no curve."""
 
 import numpy as np
+from scipy.spatial import KDTree
 
 WIDTH = 0.13  # of the axes
 CLEAR = 0.045  # wanted distance from curves, in fractions of the axes
@@ -61,7 +62,7 @@ def _corners(height, anchor):
 def place(axes, curves, slopes):
     """[(slope, (x, y) of the lower left corner, height)] in axes fractions; one that finds no
     free place is left out."""
-    taken = _dense(axes, curves)
+    taken = KDTree(_dense(axes, curves))
     placed = []
     for slope in slopes:
         height = _rise(axes, slope)
@@ -69,9 +70,9 @@ def place(axes, curves, slopes):
             continue
         for corner in _corners(height, _anchor(axes, curves, slope)):
             area = _area(corner, height)
-            if ((area[:, None] - taken[None]) ** 2).sum(-1).min() >= CLEAR ** 2:
+            if np.isinf(taken.query(area, distance_upper_bound=CLEAR)[0]).all():
                 placed.append((slope, corner, height))
-                taken = np.concatenate([taken, area])
+                taken = KDTree(np.concatenate([taken.data, area]))
                 break
     return placed
 

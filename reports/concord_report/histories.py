@@ -1,6 +1,7 @@
 """Time series from the runs' history.csv: the columns, read."""
 
 import csv
+import math
 
 from .loading import InputError, number
 
@@ -79,10 +80,21 @@ def _read(study, row, column, against=None):
     return [(x, v) for x, v in zip(*found) if number(x) is not None and number(v) is not None]
 
 
-def series_of(study, row, column):
-    """(times, values) of a column, thinned; None when the run has no such column."""
-    finite = _read(study, row, column)
-    return thinned([p[0] for p in finite], [p[1] for p in finite]) if finite else None
+def series_of(study, row, columns, change_from=None, change=False):
+    """(times, values) of a column, or of the length of the vector of several, thinned; less its first
+    value with `change`, less that at `change_from` and from then on. None when the run has no such column."""
+    names = [columns] if isinstance(columns, str) else columns
+    parts = [_read(study, row, name) for name in names]
+    if not all(parts) or len({len(p) for p in parts}) > 1:
+        return None
+    if change_from is not None:
+        parts = [[p for p in part if p[0] >= change_from * (1 - 1e-9)] for part in parts]
+        if not parts[0]:
+            return None
+    first = [part[0][1] if change or change_from is not None else 0.0 for part in parts]
+    values = [[v - zero for _, v in part] for part, zero in zip(parts, first)]
+    whole = values[0] if isinstance(columns, str) else [math.hypot(*v) for v in zip(*values)]
+    return thinned([t for t, _ in parts[0]], whole)
 
 
 def pair(study, row, x, y, most):

@@ -110,11 +110,27 @@ def _is_table_list(value):
     return isinstance(value, list) and all(isinstance(v, dict) for v in value)
 
 
+def _is_points(value):
+    x, y = value.get("x"), value.get("y")
+    return isinstance(value.get("label"), str) and isinstance(x, list) and isinstance(y, list) and len(x) == len(y) > 0 \
+        and None not in map(number, x + y)
+
+
+ANIMATION = "{frames, seconds, from, to}: numbers, the first two above 0"
+
+
+def _is_animation(value):
+    return isinstance(value, dict) and set(value) <= {"frames", "seconds", "from", "to"} and None not in map(number, value.values()) \
+        and all(value.get(key, 1) > 0 for key in ("frames", "seconds"))
+
+
 # list and key of an entry: (what is allowed in words, the test); a missing key is fine everywhere
 ALLOWED = {
     ("plots", "inset"): (WINDOW, _is_window),
     ("plots", "baseline"): ("a selection {method, variant, ...} or a list of them",
                             lambda v: isinstance(v, dict) or _is_table_list(v)),
+    ("plots", "points"): ("a list of {label, x: numbers, y: as many}", lambda v: _is_table_list(v) and all(map(_is_points, v))),
+    ("plots", "change_from"): ("a time in s", lambda v: number(v) is not None),
     ("plots", "resolutions"): ("a list of numbers",
                                lambda v: isinstance(v, list) and None not in map(number, v)),
     ("plots", "columns"): ("a list of columns of history.csv",
@@ -122,7 +138,9 @@ ALLOWED = {
     ("pictures", "times"): ("a list of times in s",
                             lambda v: isinstance(v, list) and v and None not in map(number, v)),
     ("pictures", "panels"): ("a list of {method, variant, ...}", _is_table_list),
-    ("pictures", "range"): (f'"common" or {PAIR}', lambda v: v == "common" or _is_pair(v)),
+    ("pictures", "range"): (f'"common", "robust" or {PAIR}', lambda v: v in ("common", "robust") or _is_pair(v)),
+    ("pictures", "draw"): ('"body", "cells" or "spheres"', lambda v: v in ("body", "cells", "spheres")),
+    ("pictures", "animate"): (ANIMATION, _is_animation),
     ("pictures", "crop"): (WINDOW, _is_window),
 }
 

@@ -38,7 +38,7 @@ def _plots(study, cases, store, warnings):
             continue
         drawing = plots.drawn(spec, f"{slug(study.name)}-p{number}", store)
         out.append({"kind": plot["kind"], "title": variant_text(spec["title"]), "svg": drawing,
-                    "note": spec.get("note", "")})
+                    "note": spec.get("note", ""), "statement": plot.get("statement") or "", "source": plot.get("source") or ""})
     return out
 
 

@@ -20,22 +20,27 @@ def history(study, cases, plot):
     units = {name_and_unit(column)[1] for column in columns}
     if len(units) > 1:
         return f"the columns {', '.join(columns)} have several units ({', '.join(sorted(units))})"
-    runs, note = _picked(chosen(cases, plot), plot)
-    several = len(columns) > 1
-    found = _several_columns(study, runs, columns) if several else _one_column(study, runs, columns[0])
-    missing = [c for c in columns if not any(line["column"] == c for line in found)]
-    found += [line for entry in _entries(plot) for line in _compared(study, cases, entry, columns)]
+    several = len(columns) > 1 and not plot.get("norm")
+    runs, note = _picked(chosen(cases, plot), plot, several)
+    wanted = columns if several else [tuple(columns) if plot.get("norm") else columns[0]]
+    found = _several_columns(study, runs, wanted, plot) if several else _one_column(study, runs, wanted[0], plot)
+    missing = [c for c in columns if several and not any(line["column"] == c for line in found)]
+    found += [line for entry in lines.entries(plot, "baseline") for line in _compared(study, cases, entry, wanted, plot)]
     if not found:
         return f"no history.csv of this report has the column {' or '.join(columns)}"
-    if plot.get("change"):
-        found = [{**c, "y": [v - c["y"][0] for v in c["y"]]} for c in found]
+    if plot.get("log"):
+        found, zero = lines.magnitudes(found)
+        note = f"{note} {zero}".strip()
+        if not found:
+            return f"on a logarithmic axis: {zero}"
     rows = [c.pop("row") for c in found]
     if any(c.get("rank") for c in found):
         note = f"{note} The stronger the line, the finer the run.".strip()
     if missing:
         note = f"{note} No run has {' or '.join(name_and_unit(c)[0] for c in missing)}.".strip()
-    return _axes(plot, found, rows, columns, units.pop()) | {
-        "legend": several or len(found) > 4 or any("dash" in c for c in found), "note": note}
+    spec = _axes(plot, found, rows, columns, units.pop())
+    spec["curves"] += lines.published(plot)
+    return spec | {"note": note, "legend": several or len(found) > 4 or any("dash" in c for c in spec["curves"])}
 
 
 def _axes(plot, found, rows, columns, unit):
@@ -47,12 +52,16 @@ def _axes(plot, found, rows, columns, unit):
         found, seconds = scaled(found, "x", "s")
     if number(plot.get("y_scale")):
         found, unit = times(found, "y", plot["y_scale"]), ""
-    else:
+    elif not plot.get("log"):
         found, unit = scaled(found, "y", unit)
-    name = ("change of " if plot.get("change") else "") + _shared_name(columns)
+    name = _shared_name(columns)
+    if plot.get("change") or number(plot.get("change_from")) is not None:
+        name = f"change of {name}"
+    if plot.get("log"):
+        name = f"size of {name}" if not name.startswith("change") else f"size of the {name}"
     ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in found)
     ends += f" {unit}" if unit else ""
-    return {"scales": ["linear", "linear"], "xlabel": f"{over} [{seconds}]" if seconds else over,
+    return {"scales": ["linear", "log" if plot.get("log") else "linear"], "xlabel": f"{over} [{seconds}]" if seconds else over,
             "ylabel": f"{name} [{unit}]" if unit else name, "triangles": [],
             "curves": [{k: v for k, v in c.items() if k != "column"} for c in found],
             "title": plot.get("title") or f"{capital(name)} over {over}",
@@ -72,35 +81,36 @@ def _shared_name(columns):
     return MEANT.get(name_and_unit(columns[0])[1], "value")
 
 
-def _picked(cases, plot):
+def _picked(cases, plot, several=False):
     """([(case, level, number of the level's rank from the finest, how many of the case)], note)."""
     wanted = plot.get("resolutions") or ([plot["resolution"]] if number(plot.get("resolution")) else [])
     picked = [(case, [l for l in case.levels[::-1] if not wanted or any(lines.near(l.resolution, w) for w in wanted)])
               for case in cases]
     note = ""
-    if sum(len(levels) for _, levels in picked) > MOST_RUNS or len(plot.get("columns") or []) > 1 and not wanted:
+    if sum(len(levels) for _, levels in picked) > MOST_RUNS or several and not wanted:
         if any(len(levels) > 1 for _, levels in picked):
             note = "Finest level of each case."
         picked = [(case, levels[:1]) for case, levels in picked]
     return [(case, level, rank, len(levels)) for case, levels in picked for rank, level in enumerate(levels)], note
 
 
-def _line(study, case, level, column, **more):
-    """The column of the level's first run that has it, or None."""
-    row, series = next(((r, s) for r in level.rows if (s := series_of(study, r, column))), (None, None))
+def _line(study, case, level, column, plot, **more):
+    """The column, or the length of the vector of several, of the level's first run that has it, or None."""
+    start, change = number(plot.get("change_from")), plot.get("change")
+    row, series = next(((r, s) for r in level.rows if (s := series_of(study, r, column, start, change))), (None, None))
     if not series:
         return None
     return {"case": case.index, "method": case.method, "style": case.style, "x": series[0], "y": series[1],
             "low": None, "high": None, "slope": None, "broken": [broken(row)], "row": row, "column": column, **more}
 
 
-def _one_column(study, runs, column):
+def _one_column(study, runs, column, plot):
     """Hue by method; dashes by variant, or by level where there is but one case."""
     alone = len({case.index for case, *_ in runs}) == 1
     out = []
     for case, level, rank, count in runs:
         more = {"dash": rank, "fade": 1 + 0.3 * rank} if alone and count > 1 else {}
-        line = _line(study, case, level, column, rank=rank, label=_run(case, level, count > 1), **more)
+        line = _line(study, case, level, column, plot, rank=rank, label=_run(case, level, count > 1), **more)
         out += [line] if line else []
     return out
 
@@ -110,7 +120,7 @@ def _run(case, level, several):
     return lines.run_label(case, level, row, several)
 
 
-def _several_columns(study, runs, columns):
+def _several_columns(study, runs, columns, plot):
     """Hue by column, dashes by run."""
     out, hues = [], {}
     for column in columns:
@@ -120,21 +130,16 @@ def _several_columns(study, runs, columns):
         for column in columns:
             label = name_and_unit(column)[0]
             label = f"{label}, {_run(case, level, count > 1)}" if len(runs) > 1 else label
-            line = _line(study, case, level, column, label=label, hue=hues[column], dash=number_ % len(DASHES))
+            line = _line(study, case, level, column, plot, label=label, hue=hues[column], dash=number_ % len(DASHES))
             out += [{**line, "case": -1 - len(out)}] if line else []
     return out
 
 
-def _entries(plot):
-    wanted = plot.get("baseline") or []
-    return [wanted] if isinstance(wanted, dict) else wanted
-
-
-def _compared(study, cases, entry, columns):
+def _compared(study, cases, entry, columns, plot):
     """Runs to compare with: the finest of each case, or the one at the entry's resolution."""
     out = []
-    for case, level, _, _ in _picked(chosen(cases, entry), {**entry, "columns": columns * 2})[0]:
+    for case, level, _, _ in _picked(chosen(cases, entry), entry, True)[0]:
         label = variant_text(entry.get("label")) or case.label
-        line = _line(study, case, level, entry.get("quantity") or columns[0], label=label, reference=True, dash=0)
+        line = _line(study, case, level, entry.get("quantity") or columns[0], plot, label=label, reference=True, dash=0)
         out += [line] if line else []
     return out
