@@ -122,7 +122,7 @@ void Constraints::find_on_faces() {
 }
 
 void Constraints::find_inside() {
-  const Conditions everywhere = SurfaceConditions(m_problem, m_body.mesh).everywhere();
+  const Conditions everywhere = conditions_everywhere(m_problem, m_body.mesh);
   for (Index a = 0; a < m_body.bulk; ++a) {
     for (int i = 0; i < m_body.dim; ++i) {
       if (everywhere[i] >= 0) m_dofs.push_back({a, i, everywhere[i], Vec3::Zero()});

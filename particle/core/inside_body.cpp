@@ -21,12 +21,6 @@ namespace {
                    "displacements on surfaces (3D) or curves (plane), or on the whole body");
 }
 
-void fill(Conditions& conditions, const std::array<bool, 3>& components, Index condition) {
-  for (int i = 0; i < 3; ++i) {
-    if (components[i] && conditions[i] < 0) conditions[i] = condition;
-  }
-}
-
 /// Which line through two points crosses which piece of the body's surface.
 class Crossings {
  public:
@@ -149,28 +143,23 @@ bool is_whole_body(const scene::Mesh::Group& group, const scene::Mesh& mesh) {
   return group.dim == mesh.dim && static_cast<std::ptrdiff_t>(group.entities.size()) == parts;
 }
 
-SurfaceConditions::SurfaceConditions(const scene::Problem& problem, const scene::Mesh& mesh)
-    : m_of(mesh.entities.size(), Conditions{-1, -1, -1}) {
+Conditions conditions_everywhere(const scene::Problem& problem, const scene::Mesh& mesh) {
+  Conditions conditions{-1, -1, -1};
   for (std::size_t k = 0; k < problem.boundaries.size(); ++k) {
     const scene::BoundaryCondition& bc = problem.boundaries[k];
     if (bc.kind == scene::BoundaryKind::traction) continue;
-    const std::array<bool, 3> components = prescribed_components(bc, mesh);
     (void)mesh.group_nodes(bc.group, bc.where);  // reports a missing group
     const scene::Mesh::Group& group = mesh.groups.at(bc.group);
-    if (group.dim == mesh.dim) {
-      if (!is_whole_body(group, mesh)) refuse(bc, "part of the body");
-      fill(m_everywhere, components, static_cast<Index>(k));
-    } else if (group.dim == mesh.dim - 1) {
-      for (const Index e : group.entities) fill(m_of[e], components, static_cast<Index>(k));
-    } else {
+    if (group.dim == mesh.dim - 1) continue;
+    if (group.dim < mesh.dim - 1)
       refuse(bc, group.dim == 0 ? "a group of points" : "a group of curves");
-    }
-  }
-  for (Conditions& conditions : m_of) {
+    if (!is_whole_body(group, mesh)) refuse(bc, "part of the body");
+    const std::array<bool, 3> components = prescribed_components(bc, mesh);
     for (int i = 0; i < 3; ++i) {
-      if (conditions[i] < 0) conditions[i] = m_everywhere[i];
+      if (components[i] && conditions[i] < 0) conditions[i] = static_cast<Index>(k);
     }
   }
+  return conditions;
 }
 
 std::vector<Vec3> in_sweep_order(const scene::Mesh& mesh, std::span<const Vec3> X, double h,

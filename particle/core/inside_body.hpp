@@ -9,23 +9,10 @@ namespace concord::particle {
 /// Whether a group holds all of the body.
 bool is_whole_body(const scene::Mesh::Group& group, const scene::Mesh& mesh);
 
-/// The displacement conditions of a problem as such bodies can serve them: on faces of the body
-/// (its edges in the plane), or on all of it. Where both speak, the face's goes.
-class SurfaceConditions {
- public:
-  /// Throws InputError at the [[boundary]] entry for displacements on points and edges, where
-  /// no particle and no piece of a cell lies, and on part of the volumes.
-  SurfaceConditions(const scene::Problem& problem, const scene::Mesh& mesh);
-
-  /// On a face of the body; entity: index into Mesh::entities.
-  const Conditions& of(Index entity) const { return m_of[entity]; }
-  /// On every particle.
-  const Conditions& everywhere() const { return m_everywhere; }
-
- private:
-  Conditions m_everywhere{-1, -1, -1};
-  std::vector<Conditions> m_of;
-};
+/// The displacement conditions on every particle: those on the whole body. Throws InputError at
+/// the [[boundary]] entry for displacements on part of the volumes, on points, and on curves in
+/// 3D: no particle need lie there. Those on faces act through boundary points.
+Conditions conditions_everywhere(const scene::Problem& problem, const scene::Mesh& mesh);
 
 /// What a formulation knows of such a body, particles in the order in which they are numbered.
 struct InsideParts {

@@ -92,8 +92,21 @@ std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const
   return best;
 }
 
+void ParticleField::expand(std::span<const Vec3> X, std::span<Vec3> u,
+                           std::span<Mat3> gradient) const {
+  for (std::size_t q = 0; q < X.size(); ++q) {
+    std::size_t a = 0;
+    for (std::size_t b = 1; b < m_X.size(); ++b) {
+      if ((X[q] - m_X[b]).squaredNorm() < (X[q] - m_X[a]).squaredNorm()) a = b;
+    }
+    u[q] = m_u[a] + m_H[a] * (X[q] - m_X[a]);
+    if (!gradient.empty()) gradient[q] = m_H[a];
+  }
+}
+
 void ParticleField::evaluate(std::span<const Vec3> X, std::span<Vec3> u,
                              std::span<Mat3> gradient) const {
+  if (m_simplices.empty()) return expand(X, u, gradient);
   std::array<double, 4> w{};
   std::array<Vec3, 4> P, g;
   for (std::size_t q = 0; q < X.size(); ++q) {

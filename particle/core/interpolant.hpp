@@ -13,6 +13,11 @@ namespace concord::particle {
 /// bracket is u(X) - (grad u(X)) (X - X_i)/2, and the sum over w_i of (X - X_i) vanishes. The
 /// particles' own gradients are thus part of the answer that is judged, and the interpolation
 /// adds no second-order error where they are accurate. The gradient is that of this function.
+///
+/// Where particles lie inside the body, the simplices end half a spacing before its faces.
+/// There the function of the simplex that X lies least outside of goes on: the same algebra, so
+/// that quadratic fields are still reproduced. Particles in one layer have no simplices: then
+/// u(X) is the first-order expansion of the nearest particle.
 class ParticleField final : public scene::Field {
  public:
   /// Takes the body's simplices: they are gone from it afterwards. X, u, H: one a particle.
@@ -21,6 +26,7 @@ class ParticleField final : public scene::Field {
                 std::span<Mat3> gradient) const override;
 
  private:
+  void expand(std::span<const Vec3> X, std::span<Vec3> u, std::span<Mat3> gradient) const;
   std::size_t locate(const Vec3& X, std::array<double, 4>& w) const;
   void weights(std::size_t simplex, const Vec3& X, std::array<double, 4>& w) const;
 
