@@ -18,11 +18,15 @@ def caption(job):
     case, parts = job["case"], [job["case"].label]
     if job["h"]:
         parts.append(f"h = {exact(job['h'])} m" if job["h"] >= 0.01 else f"h = {exact(job['h'] * 1e3, 3)} mm")
-    if job["time"] and not _as_wanted(job):
+    if job["film"]:
+        parts.append(f"{len(job['film'])} frames")
+    elif job["time"] and not _as_wanted(job) and job["scale"]:
         parts.append(time_text(job["time"], job["row"]))
     if job["scale"] != 1:
-        parts.append(f"displacement ×{exact(job['scale'])}")
-    if job["whole"] is not None:
+        parts.append(f"displacement ×{exact(job['scale'])}" if job["scale"] else "reference body")
+    if case.method == "voronoi" and job["draw"] == "body" and not job["cells"] and job["particles"]:
+        parts.append("surface through the outermost particles")
+    if job["whole"] is not None and job["color"] != frames.PLAIN:
         factor, unit = engineering(max(map(abs, job["limits"])), field_name(job["color"])[1])
         parts.append(f"{ends(*(v * factor for v in job['range']))} {unit}".strip())
     if job.get("how") == "scatter":
@@ -92,18 +96,25 @@ def bar(job):
 def note(jobs):
     """The sentences below a group of pictures."""
     count, bar_ = len(jobs), jobs[0]["beyond"]
-    out = []
+    out, plain = [], jobs[0]["color"] == frames.PLAIN
     if count > 1:
         which = "both" if count == 2 else f"all {count}"
-        out.append(f"One colour scale and one view for {which} pictures"
+        out.append(f"One {'' if plain else 'colour scale and one '}view for {which} pictures"
                    + (", each instant centred on its bodies." if any(j["followed"] for j in jobs) else "."))
-        if any(bar_):
-            out.append("Values beyond an end of the scale, where it has a tip, have that end’s colour.")
+    if any(bar_):
+        ends_ = "The scale ends at the 1st and 99th percentile. " if jobs[0]["picture"].get("range") == "robust" else ""
+        out.append(f"{ends_}Values beyond an end of the scale, where it has a tip, have that end’s colour: "
+                   f"{share(max(j['clipped'] for j in jobs))} of the points{' of a picture' if count > 1 else ''}.")
     if any(j["plate"] for j in jobs):
         out.append("The grey plate is where the body is held.")
     if in_rows(jobs[0]["whole"]):
         out.append("Frames nearest to the instants; one that is more than 1 % off tells its own time.")
     return " ".join(out)
+
+
+def share(part):
+    """"up to 2.1 %"; less than a tenth is not told more exactly."""
+    return "less than 0.1 %" if part < 1e-3 else f"up to {exact(100 * part, 2)} %"
 
 
 def ends(low, high):

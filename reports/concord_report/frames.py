@@ -5,6 +5,8 @@ from pathlib import Path
 from .loading import InputError, number, read_json
 
 EYE = (0.62, -1.0, 0.55)  # direction to the eye in three dimensions
+PLAIN = "none"  # instead of a field: the shape alone
+TAILS = (1, 99)  # percentiles at the ends of a robust scale
 POINT_CELL = 1  # VTK_VERTEX: the frame of a particle method
 
 
@@ -55,6 +57,8 @@ def values(frame, color):
     "displacement_x". None when the frame lacks it."""
     import numpy as np
     from .quantities import split_component
+    if color == PLAIN:
+        return np.zeros(len(frame["points"]))
     base, component = split_component(color)
     if color in frame["fields"]:
         base, component = color, None
@@ -92,10 +96,7 @@ def facts(path, color, scale, crop=None):
         return {"missing": f"the frame has no point field '{color}'; it has: "
                            + (", ".join(sorted(frame["fields"])) or "none")}
     positions, _ = deformed(frame, scale)
-    there = np.isfinite(positions).all(axis=1)
-    for k, along in enumerate("xy"):
-        if crop and crop.get(along):
-            there &= (positions[:, k] >= crop[along][0]) & (positions[:, k] <= crop[along][1])
+    there = _inside(positions, crop)
     if not there.any():
         return {"missing": "nothing of the body lies inside the crop" if crop else "no point has a place"}
     good = data[there & np.isfinite(data)]
@@ -113,9 +114,28 @@ def facts(path, color, scale, crop=None):
         return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
     particles = is_particles(frame)
     return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
-            "range": [float(good.min()), float(good.max())], "flat": flat, "points": len(positions),
+            "range": [float(good.min()), float(good.max())], "robust": np.percentile(good, TAILS).tolist(), "flat": flat, "points": len(positions),
             "particles": particles, "plate": plate, "middle": middle, "nan": int(len(data) - np.isfinite(data).sum()),
             "plane": flat and (particles or plane_cells.supported(frame))}
+
+
+def beyond(path, color, scale, crop, limits):
+    """The share of the points seen whose values lie beyond the limits."""
+    import numpy as np
+    frame = read(path)
+    data, there = values(frame, color), _inside(deformed(frame, scale)[0], crop)
+    good = data[there & np.isfinite(data)]
+    return float(((good < limits[0]) | (good > limits[1])).mean()) if len(good) else 0.0
+
+
+def _inside(positions, crop):
+    """Which points have a place, inside the crop."""
+    import numpy as np
+    there = np.isfinite(positions).all(axis=1)
+    for k, along in enumerate("xy"):
+        if crop and crop.get(along):
+            there &= (positions[:, k] >= crop[along][0]) & (positions[:, k] <= crop[along][1])
+    return there
 
 
 def held(frame):

@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import (balance, captions, claims, fronts, heatmaps, histories, matched, outputs, pictures, plots, quantities,
+from . import (balance, captions, claims, films, frames, fronts, heatmaps, histories, matched, outputs, pictures, plots, quantities,
                signals, tables)
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
@@ -67,6 +67,7 @@ def _group(group):
     common = [p for p in told[0] if all(p in parts for parts in told)] if whole and len(drawn) > 1 else []
     columns = captions.columns(whole, len(jobs)) if whole else 0
     view = {"bar": bar, "pictures": [_view(job, whole, bar, common) for job in jobs], "columns": columns,
+            "plain": drawn[0]["color"] == frames.PLAIN, "film": _film(drawn) if drawn[0]["film"] else None,
             "title": variant_text((whole or {}).get("caption") or ""),
             "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
             "panel_width": captions.panel_width(drawn[0], -(-len(jobs) // (columns or 1))),
@@ -78,6 +79,20 @@ def _group(group):
     return view
 
 
+def _film(drawn):
+    """What the page needs to play a figure's sheets: how many pictures, for how long, the instants in words."""
+    longest = max(drawn, key=lambda job: len(job["film"]))
+    return {"count": len(longest["film"]), "seconds": films.wanted(longest["picture"])["seconds"],
+            "times": [captions.time_text(t, longest["row"]) for t in longest["times"]]}
+
+
+def _sheet(job):
+    """(pictures on the sheet, across, down, place of the last one [per cent])."""
+    count, across, down = len(job["film"]), job["across"], job["down"]
+    row, column = divmod(count - 1, across)
+    return {"count": count, "across": across, "down": down, "left": -100 * column, "top": -100 * row}
+
+
 def _view(job, whole, bar, common):
     caption = variant_text(job["picture"].get("caption") or "")
     if "missing" in job:
@@ -86,9 +101,18 @@ def _view(job, whole, bar, common):
     parts = [p.replace(" ", "\u00a0") if len(p) < 20 else p for p in parts if p not in common]
     at = f", {captions.time_text(job['time'], job['row'])}" if "instant" in job["picture"] else ""
     return {"uri": pictures.data_uri(job), "width": job["width"], "height": job["height"], "instant": "",
-            "caption": caption, "parts": parts, "swatch": swatch(case.method, case.style) if whole is None else "",
-            "alt": f"{case.label}{at}: body coloured by {bar['name']}, from {bar['low']} to {bar['high']} "
-                   f"{bar['unit']}".strip()}
+            "sheet": _sheet(job) if job["film"] else None, "caption": caption, "parts": parts, "swatch": swatch(case.method, case.style) if whole is None else "",
+            "alt": _alt(job, at, bar)}
+
+
+def _alt(job, at, bar):
+    what = {"cells": "its Voronoi cells", "spheres": "its particles"}.get(job["draw"], "body")
+    if job["film"]:
+        at = f", {len(job['film'])} instants from {captions.time_text(job['times'][0], job['row'])} to " \
+             f"{captions.time_text(job['times'][-1], job['row'])}"
+    if job["color"] == frames.PLAIN:
+        return f"{job['case'].label}{at}: {what}"
+    return f"{job['case'].label}{at}: {what} coloured by {bar['name']}, from {bar['low']} to {bar['high']} {bar['unit']}".strip()
 
 
 def _tables(study, cases):

@@ -10,14 +10,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import cache, frames
+from . import cache, films, frames, voronoi_cells
 from .cases import chosen
 from .loading import number
 from .palette import RED_BLUE, VIRIDIS
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
 FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
-CODE = ("render", "render_vtk", "render_lines", "render_plane", "render_scatter", "plane_cells", "solid_cells", "frames", "palette")
+CODE = ("render", "render_vtk", "render_lines", "render_plane", "render_scatter", "render_cells", "plane_cells", "solid_cells",
+        "voronoi_cells", "films", "frames", "palette")
 WIDE = (1760, 1320)  # pixels of a solid body's drawing, alone and as a panel; the picture has half of it
 LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 
@@ -29,7 +30,7 @@ def entries(study):
     out = []
     for picture in study.listed("pictures"):
         panels, times = picture.get("panels"), picture.get("times")
-        if not panels and not times:
+        if not panels and not times and not picture.get("animate"):
             out.append((picture, None))
             continue
         shared = {k: v for k, v in picture.items() if k not in ("panels", "caption", "times")}
@@ -41,8 +42,8 @@ def entries(study):
 
 
 def _run_of(study, cases, picture, color):
-    """(case, row, time, path, field) of the first run that the picture's selection has frames of;
-    or a text: why not."""
+    """(case, row, time, path, field) of the first run that the picture's selection has frames of, times and
+    paths of an animation; or a text: why not."""
     wanted = number(picture.get("resolution"))
     for case in chosen(cases, picture):
         levels = [l for l in case.levels if wanted is None or abs(l.resolution - wanted) <= 1e-4 * wanted]
@@ -57,6 +58,9 @@ def _run_of(study, cases, picture, color):
                     if path.is_file():
                         return case, row, None, path, color if named else f"{color}_difference"
                 elif found := frames.series(folder):
+                    told = films.wanted(picture)
+                    if told and (film := films.instants(found, told)):
+                        return case, row, [t for t, _ in film], [str(path) for _, path in film], color
                     return (case, row, *frames.at_time(found, picture.get("time")), color)
     if not chosen(cases, picture):
         return "this report has no such run"
@@ -68,38 +72,69 @@ def prepare(study, cases, store, warnings):
     jobs = []
     for picture, whole in entries(study):
         color = picture.get("color") or "displacement"
-        job = {"picture": picture, "color": color, "scale": number(picture.get("scale_displacement")) or 1.0,
+        scale = number(picture.get("scale_displacement"))
+        job = {"picture": picture, "color": color, "scale": 1.0 if scale is None else scale, "film": None,
                "whole": whole, "crop": picture.get("crop")}
         found = _run_of(study, cases, picture, color)
         if isinstance(found, str):
             job["missing"] = found
         else:
             case, row, job["time"], path, job["color"] = found
-            job.update(case=case, h=number(row.get("h")), scene=case.scene, path=str(path), row=row,
-                       resolution=number(row.get("resolution")), file=cache.file_digest(path))
-            job.update(_facts(job, path, store))
+            paths = path if isinstance(path, list) else [path]
+            if isinstance(path, list):
+                job["film"], job["times"], job["time"] = paths, job["time"], job["time"][-1]
+            job.update(case=case, h=number(row.get("h")), scene=case.scene, path=str(paths[-1]), row=row,
+                       resolution=number(row.get("resolution")), file=[cache.file_digest(p) for p in paths])
+            job.update(films.together([_facts(job, p, digest, store) for p, digest in zip(paths, job["file"])]))
+            _how(job, picture, study.folder / row["run"])
         if "missing" in job:
             who = " ".join(str(picture[k]) for k in ("method", "variant", "resolution") if picture.get(k))
             job["label"] = who
             remark = f"{study.name}: no picture of {who or 'the study'}: {job['missing']}"
             warnings += [] if remark in warnings else [remark]  # once for all instants
         jobs.append(job)
-    _share_scales([j for j in jobs if "missing" not in j])
+    drawn = [j for j in jobs if "missing" not in j]
+    _share_scales(drawn)
+    for job in drawn:
+        job["clipped"] = max(_clipped(job, store)) if any(job["beyond"]) else 0.0
     return jobs
 
 
-def _facts(job, path, store):
-    key = cache.digest(job["file"], job["color"], job["scale"], job["crop"],
-                       cache.source_digest("frames", "plane_cells"))
+def _known(store, make, *parts):
+    """What `make` returns, from the cache where it is there."""
+    key = cache.digest(*parts, cache.source_digest("frames", "plane_cells"))
     known = store.get(key, ".json")
     if known is None:
-        known = json.dumps(frames.facts(path, job["color"], job["scale"], job["crop"])).encode()
+        known = json.dumps(make()).encode()
         store.put(key, ".json", known)
     return json.loads(known)
 
 
+def _facts(job, path, digest, store):
+    what = job["color"], job["scale"], job["crop"]
+    return _known(store, lambda: frames.facts(path, *what), digest, *what)
+
+
+def _clipped(job, store):
+    """The shares of points beyond the scale's ends, a number a frame."""
+    what = job["color"], job["scale"], job["crop"], job["limits"]
+    return [_known(store, lambda p=path: frames.beyond(p, *what), digest, *what)
+            for path, digest in zip(job["film"] or [job["path"]], job["file"])]
+
+
+def _how(job, picture, folder):
+    """How the body is drawn, and the file of its Voronoi cells where the run left one."""
+    job["draw"] = picture.get("draw") or "body"
+    cells = voronoi_cells.path_in(folder) if job.get("particles") else None
+    job["cells"], job["cells_file"] = (str(cells), cache.file_digest(cells)) if cells else (None, None)
+    if job["draw"] == "cells" and not cells and "missing" not in job:
+        job["missing"] = "the run left no cells.vtkhdf"
+
+
 def _together(job, other):
     """True when two pictures share their view: panels of one picture, or the same part of a scene."""
+    if bool(job["film"]) != bool(other["film"]):
+        return False
     if job["whole"] is not None or other["whole"] is not None:
         return job["whole"] is other["whole"]
     return job["scene"] == other["scene"] and job["crop"] == other["crop"]
@@ -115,24 +150,26 @@ def _share_scales(jobs):
         job["plane"] = flat and all(j["plane"] for j in alike)
         job["view"] = _view(job, alike, flat)
         wanted = job["picture"].get("range")
+        job["budget"] = films.BUDGET // len([j for j in alike if j["film"]] or [job])
         same = [j for j in alike if j["color"] == job["color"] and j["picture"].get("range") == wanted]
         sizes = [max(map(abs, j["range"])) for j in same]
         shared = wanted is not None or job["whole"] is not None or \
             (min(sizes) > 0 and max(sizes) / min(sizes) <= SHARED_UP_TO)
         job["shared"] = shared and len(same) > 1
-        job["group"] = (id(job["whole"]), job["scene"], job["color"], str(wanted), str(job["crop"]),
+        job["group"] = (id(job["whole"]), job["scene"], job["color"], str(wanted), str(job["crop"]), bool(job["film"]),
                         "" if shared else jobs.index(job))
-        ranges = [j["range"] for j in (same if shared else [job])]
+        ranges = [j["robust" if wanted == "robust" else "range"] for j in (same if shared else [job])]
         span = min(r[0] for r in ranges), max(r[1] for r in ranges)
         job["limits"], job["diverging"] = _limits(*span, wanted, job["color"].endswith("_difference"))
-        job["beyond"] = [span[0] < job["limits"][0], span[1] > job["limits"][1]]
+        low, high = (e(j["range"][k] for j in same) for k, e in ((0, min), (1, max)))
+        job["beyond"] = [low < job["limits"][0], high > job["limits"][1]]
         job["long"] = LONG if len(same) <= 2 else LONG * 3 // 4 if len(same) <= 4 else LONG * 3 // 5
 
 
 def _view(job, alike, flat):
     """What is seen: the extent of all bodies, or the crop. Where the bodies of a figure travel, the rows
     of instants each have their own middle, and the largest of their extents."""
-    room = max(0.5 * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
+    room = max((0.6 if j["cells"] else 0.5) * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
     def extent(jobs):
         seen = [j["seen_flat" if flat else "seen"] for j in jobs]
         return ([min(s[0][k] for s in seen) - room for k in range(3)],
@@ -176,13 +213,15 @@ def _limits(low, high, wanted=None, difference=False):
 def _render_job(job):
     stops = RED_BLUE if job["diverging"] else VIRIDIS
     more = {"long": job["long"]} if job["plane"] else {"wide": WIDE[job["whole"] is not None]}
-    return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat", "plate")} \
+    if job["film"]:
+        more = {"film": job["film"], "long" if job["plane"] else "wide": 2 * films.WIDE, "budget": job["budget"]}
+    return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat", "plate", "draw", "cells")} \
         | {"stops": stops, **more}
 
 
 def _key(job):
-    content = {k: v for k, v in _render_job(job).items() if k != "path"}
-    return cache.digest(job["file"], content, cache.source_digest(*CODE))
+    content = {k: v for k, v in _render_job(job).items() if k not in ("path", "film", "cells")}
+    return cache.digest(job["file"], job["cells_file"], content, cache.source_digest(*CODE))
 
 
 def render_missing(jobs, store, warnings):

@@ -9,22 +9,43 @@ from pathlib import Path
 sys.path = [p for p in sys.path if Path(p or ".").resolve() != Path(__file__).resolve().parent]
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from concord_report import frames  # noqa: E402  (needs the path above)
+from concord_report import films, frames  # noqa: E402  (needs the path above)
 
 QUALITY = 86  # of WebP: no visible loss on smooth shading
+COARSER = (78, 66, 54, 42, 30, 20)  # of the sheet of an animation, until it is light enough
 
 
-def encode(pixels):
-    """(format, bytes, size) size of an RGBA array, as WebP where PIL can."""
+def encode(pixels, qualities=(QUALITY,), budget=None):
+    """(format, bytes, size) size of an RGBA array, as WebP where PIL can: at the first quality that `budget` bytes hold."""
     from PIL import Image, features
     image = Image.fromarray(pixels, "RGBA").convert("RGBa")  # averaging wants premultiplied alpha
     image = image.reduce(2).convert("RGBA")
     stream = io.BytesIO()
     if features.check("webp"):
-        image.save(stream, "WEBP", quality=QUALITY, method=5)
+        for quality in qualities:
+            stream = io.BytesIO()
+            image.save(stream, "WEBP", quality=quality, method=5 if budget is None else 4)
+            if budget is None or stream.tell() <= budget:
+                break
         return "webp", stream.getvalue(), image.size
     image.save(stream, "PNG", optimize=True)
     return "png", stream.getvalue(), image.size
+
+
+def picture(job, draw):
+    """(what is known of the job's picture, its bytes)."""
+    drawings = []
+    for path in job.get("film") or [job["path"]]:
+        drawings.append(draw(frames.read(path), job))
+        if not drawings[-1][..., 3].any():
+            raise RuntimeError(f"the picture of {path} came out empty")
+    if not job.get("film"):
+        kind, data, size = encode(drawings[0])
+        return {"format": kind, "width": size[0], "height": size[1]}, data
+    kind, data, size = encode(films.sheet(drawings), COARSER, job["budget"])
+    across = films.columns(len(drawings))
+    return {"format": kind, "width": size[0] // across, "height": size[1] // -(-len(drawings) // across),
+            "across": across, "down": -(-len(drawings) // across)}, data
 
 
 def main():
@@ -36,13 +57,8 @@ def main():
     else:
         from concord_report.render_scatter import draw
     for job in jobs:
-        frame = frames.read(job["path"])
-        pixels = draw(frame, job)
-        if not pixels[..., 3].any():
-            raise RuntimeError(f"the picture of {job['path']} came out empty")
-        kind, data, size = encode(pixels)
-        head = {"format": kind, "how": sys.argv[2], "width": size[0], "height": size[1]}
-        Path(job["out"]).write_bytes(json.dumps(head).encode() + b"\n" + data)
+        head, data = picture(job, draw)
+        Path(job["out"]).write_bytes(json.dumps({**head, "how": sys.argv[2]}).encode() + b"\n" + data)
 
 
 if __name__ == "__main__":

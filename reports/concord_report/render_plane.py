@@ -4,9 +4,10 @@ method computes is not smoothed."""
 
 import numpy as np
 
-from . import frames, plane_cells
+from . import frames, plane_cells, voronoi_cells
 
 GREY = "#9e9e9e"
+PALE = "#b7cfe6"  # of bodies without a field
 EDGES = (0.05, 0.06, 0.08, 0.28)
 RIM = (0.45, 0.47, 0.5, 0.9)
 DOT_FROM = 15.0  # pixels of a spacing from which on particles show as dots
@@ -44,7 +45,12 @@ def draw(frame, job):
     per_metre = pixels[0] / max(view["high"][0] - view["low"][0], 1e-300)
     if job["particles"]:
         reference = positions if reference is None else reference
-        _particles(axes, reference[:, :2], positions[:, :2], data, job["h"], per_metre, look)
+        if job["draw"] == "spheres":
+            _discs(axes, positions[:, :2], data, job["h"], look)
+        elif job["cells"]:
+            _cells(axes, job, reference, positions, data, per_metre, look)
+        else:
+            _particles(axes, reference[:, :2], positions[:, :2], data, job["h"], per_metre, look)
     else:
         _elements(axes, frame, positions[:, :2], data, per_metre, look)
     canvas.draw()
@@ -69,7 +75,7 @@ def _rim(axes, lines):
 
 
 def _particles(axes, reference, positions, data, h, per_metre, look):
-    from matplotlib.collections import EllipseCollection, PolyCollection
+    from matplotlib.collections import PolyCollection
     good = np.isfinite(positions).all(axis=1)
     reference, positions = reference[good], positions[good]
     data = np.ma.masked_invalid(data[good])
@@ -78,10 +84,40 @@ def _particles(axes, reference, positions, data, h, per_metre, look):
     axes.add_collection(filled, autolim=False)
     _rim(axes, edge)
     if len(alone):
-        wide = np.full(len(alone), h or 0.01 * np.ptp(positions, axis=0).max())
-        axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(alone)), units="xy", offsets=positions[alone],
-                                              offset_transform=axes.transData, array=data[alone], linewidths=0,
-                                              **look), autolim=False)
+        _discs(axes, positions[alone], data[alone], h, look)
     if h and h * per_metre > DOT_FROM:
-        axes.plot(positions[:, 0], positions[:, 1], ".", color=EDGES[:3], alpha=0.45, markersize=1.8,
-                  markeredgewidth=0)
+        _dots(axes, positions, 1.8)
+
+
+def _dots(axes, positions, size, plain=False):
+    """Particles: faint ones, or white ones with a dark rim, which show on every colour."""
+    look = {"color": "white", "markeredgecolor": EDGES[:3], "markeredgewidth": 0.9} if plain else \
+        {"color": EDGES[:3], "alpha": 0.45, "markeredgewidth": 0}
+    axes.plot(positions[:, 0], positions[:, 1], "o" if plain else ".", markersize=size, **look)
+
+
+def _discs(axes, positions, data, h, look):
+    """Of diameter h."""
+    from matplotlib.collections import EllipseCollection
+    good = np.isfinite(positions).all(axis=1)
+    positions, data = positions[good], np.ma.masked_invalid(data[good])
+    wide = np.full(len(positions), h or 0.01 * np.ptp(positions, axis=0).max())
+    axes.add_collection(EllipseCollection(wide, wide, np.zeros(len(positions)), units="xy", offsets=positions,
+                                          offset_transform=axes.transData, array=data, linewidths=0, **look), autolim=False)
+
+
+def _cells(axes, job, reference, positions, data, per_metre, look):
+    """Each particle's Voronoi cell in one colour; with draw = "cells" all edges and the particles."""
+    from matplotlib.collections import LineCollection, PolyCollection
+    triangles, owner, inner, edge = voronoi_cells.plane(voronoi_cells.read(job["cells"]), reference, positions, job["h"])
+    if job["color"] == frames.PLAIN:
+        fill = {"facecolors": PALE, "edgecolors": PALE}
+    else:
+        fill = {"array": np.ma.masked_invalid(data[owner]), "edgecolors": "face", **look}
+    axes.add_collection(PolyCollection(triangles, linewidths=0.5, **fill), autolim=False)
+    shown = job["draw"] == "cells"
+    if shown or job["h"] * per_metre > EDGES_FROM:
+        axes.add_collection(LineCollection(inner, colors=[EDGES[:3] + (0.8,) if shown else EDGES], linewidths=0.9), autolim=False)
+    _rim(axes, edge)
+    if shown or job["h"] * per_metre > DOT_FROM:
+        _dots(axes, positions, 5.0 if shown else 1.8, shown)

@@ -11,10 +11,11 @@ from vtkmodules.vtkRenderingCore import (vtkActor, vtkLightKit, vtkPolyDataMappe
                                          vtkRenderWindow, vtkWindowToImageFilter)
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
 
-from . import frames, render_lines, solid_cells
+from . import frames, render_cells, render_lines, solid_cells
 
 EDGES_UP_TO = 60000  # cells; a finer mesh's edges would only darken the picture
 GREY = (0.62, 0.62, 0.62)
+PLAIN = (0.72, 0.74, 0.77)  # of bodies without a field
 
 
 def _grid(frame, positions, data):
@@ -44,6 +45,10 @@ def _colours(job):
         rgb = [np.interp(at, range(len(stops)), stops[:, k]) for k in range(3)]
         table.SetTableValue(i, *rgb, 1)
     table.SetRange(*job["limits"])
+    if job["color"] == frames.PLAIN:
+        table.SetTableRange(0, 1)
+        for i in range(256):
+            table.SetTableValue(i, *PLAIN, 1)
     table.SetNanColor(*GREY, 1)
     table.Build()
     return table
@@ -56,8 +61,8 @@ def _coloured(mapper, job):
     mapper.SetInterpolateScalarsBeforeMapping(True)
 
 
-def _spheres(positions, data, job):
-    """Spheres of diameter h (discs in the plane); without h, from the volume of the bounds."""
+def _spheres(positions, data, job, part=1.0):
+    """Spheres of diameter h, or `part` of it (discs in the plane); without h, from the volume of the bounds."""
     spread = np.ptp(positions[np.isfinite(positions).all(axis=1)], axis=0)
     full = spread[spread > 1e-9 * spread.max()]
     diameter = job["h"] or (np.prod(full) / max(1, len(positions))) ** (1 / max(1, len(full)))
@@ -67,7 +72,7 @@ def _spheres(positions, data, job):
     cloud.SetVerts(render_lines.vtk_cells(np.arange(len(positions))[:, None]))
     mapper = vtkOpenGLSphereMapper()  # ray-cast spheres: two triangles each
     mapper.SetInputData(cloud)
-    mapper.SetRadius(0.5 * diameter)
+    mapper.SetRadius(0.5 * part * diameter)
     _coloured(mapper, job)
     mapper.SetInterpolateScalarsBeforeMapping(False)
     actor = vtkActor()
@@ -96,12 +101,37 @@ def _body(positions, reference, data, job):
     colours = numpy_to_vtk(np.ascontiguousarray(data[owner]), deep=True)
     colours.SetName("color")
     skin.GetCellData().SetScalars(colours)
-    actor, mapper = _lit(skin, job)
-    mapper.SetScalarModeToUseCellData()
-    mapper.SetInterpolateScalarsBeforeMapping(False)
+    actor = _faces(skin, job)
     rim = render_lines.lines(points[quads[:, [1, 2, 3]]].reshape(-1, 3), np.arange(3 * len(quads)).reshape(-1, 3), job)
     rim.GetProperty().SetOpacity(0.16)
     return [actor, rim, *render_lines.creases(skin, job), *(_spheres(positions[alone], data[alone], job) if len(alone) else ())]
+
+
+def _faces(skin, job):
+    """Polygons with a colour each."""
+    actor, mapper = _lit(skin, job)
+    mapper.SetScalarModeToUseCellData()
+    mapper.SetInterpolateScalarsBeforeMapping(False)
+    return actor
+
+
+def _voronoi(positions, reference, data, job):
+    """The body as the outer faces of its cells; with draw = "cells" all of them, seen through, and the particles."""
+    if job["draw"] == "cells":
+        return [*_spheres(positions, data, job, render_cells.PARTICLE), *render_cells.cells(job, reference, positions)]
+    skin, rim = render_cells.skin(job, reference, positions, data)
+    rim.GetProperty().SetOpacity(0.22)
+    return [_faces(skin, job), rim, *render_lines.creases(skin, job)]
+
+
+def _particles(positions, reference, data, job):
+    good = np.isfinite(positions).all(axis=1)
+    solid = reference is not None and job["h"] and not job["view"]["flat"] and job["draw"] != "spheres"
+    if solid and job["cells"] and good.all():
+        return _voronoi(positions, reference, data, job)
+    if solid:
+        return _body(positions[good], reference[good], data[good], job)
+    return _spheres(positions[good], data[good], job)
 
 
 def _polygons(points, cells):
@@ -213,10 +243,7 @@ def draw(frame, job):
     renderer.SetBackground(1, 1, 1)
     renderer.SetBackgroundAlpha(0)
     if job["particles"]:
-        good = np.isfinite(positions).all(axis=1)
-        solid = reference is not None and job["h"] and not job["view"]["flat"]
-        actors = _body(positions[good], reference[good], data[good], job) if solid else \
-            _spheres(positions[good], data[good], job)
+        actors = _particles(positions, reference, data, job)
     else:
         actors = _surface(frame, positions, data, job)
     for position, actor in enumerate(actors):
@@ -228,16 +255,29 @@ def draw(frame, job):
         _shade(actors[0], False)
         renderer.AddActor(actors[0])
     _lights(renderer)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetAlphaBitPlanes(True)
-    window.SetMultiSamples(0)
     size = _size(job["view"], job["wide"])
-    window.SetSize(*size)
-    window.AddRenderer(renderer)
     _view(renderer, job["view"], size)
+    return _pixels(_window(renderer, size))
+
+
+WINDOWS = []  # one of each size: making it costs as much as drawing
+
+
+def _window(renderer, size):
+    """A window that shows the renderer alone."""
+    window = next((w for w in WINDOWS if tuple(w.GetSize()) == size), None)
+    if window is None:
+        window = vtkRenderWindow()
+        window.SetOffScreenRendering(True)
+        window.SetAlphaBitPlanes(True)
+        window.SetMultiSamples(0)
+        window.SetSize(*size)
+        WINDOWS.append(window)
+    for old in list(window.GetRenderers()):
+        window.RemoveRenderer(old)
+    window.AddRenderer(renderer)
     window.Render()
-    return _pixels(window)
+    return window
 
 
 def _pixels(window):

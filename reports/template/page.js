@@ -1,4 +1,4 @@
-// Sorts tables, lights up a curve, and marks where the reader is. The page is whole without it.
+// Sorts tables, lights up a curve, plays animations, and marks where the reader is. The page is whole without it.
 (function () {
   "use strict";
 
@@ -80,6 +80,53 @@
       setTimeout(function () { button.textContent = "Copy"; }, 2000);
     });
     command.appendChild(button);
+  });
+
+  // Plays the sheets of a figure together, on a click alone: nothing moves by itself.
+  document.querySelectorAll("[data-film]").forEach(function (figure) {
+    var film = JSON.parse(figure.dataset.film), timer = null;
+    var screens = figure.querySelectorAll(".screen img");
+    var player = document.createElement("div"), button = document.createElement("button");
+    var slider = document.createElement("input"), time = document.createElement("output");
+    player.className = "player";
+    player.setAttribute("role", "group");
+    player.setAttribute("aria-label", "Animation");
+    button.type = "button";
+    slider.type = "range";
+    slider.min = 0;
+    slider.max = film.count - 1;
+    slider.setAttribute("aria-label", "Instant");
+    time.setAttribute("aria-live", "off");
+    function show(k) {
+      slider.value = k;
+      time.textContent = film.times[k];
+      slider.setAttribute("aria-valuetext", film.times[k]);
+      screens.forEach(function (image) {
+        var across = +image.dataset.across;
+        var n = film.count > 1 ? Math.round(k / (film.count - 1) * (image.dataset.count - 1)) : 0;
+        image.style.left = -100 * (n % across) + "%";
+        image.style.top = -100 * Math.floor(n / across) + "%";
+      });
+    }
+    function stop() {
+      clearInterval(timer);
+      timer = null;
+      button.textContent = "▶ Play";
+    }
+    button.addEventListener("click", function () {
+      if (timer) return stop();
+      if (+slider.value >= film.count - 1) show(0);
+      button.textContent = "❚❚ Pause";
+      timer = setInterval(function () {
+        show(+slider.value + 1);
+        if (+slider.value >= film.count - 1) stop();
+      }, 1000 * film.seconds / film.count);
+    });
+    slider.addEventListener("input", function () { stop(); show(+slider.value); });
+    stop();
+    show(film.count - 1);
+    player.append(button, slider, time);
+    figure.querySelector(".panel").after(player);
   });
 
   if ("IntersectionObserver" in window) {

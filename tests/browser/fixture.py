@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 import fixture_bar
+import fixture_voronoi
 import fixture_work
 
 SIGN = "FIXTURE DATA made by tests/browser/fixture.py, not a result."
@@ -233,10 +234,15 @@ def work(folder):
     return fixture_work.work(folder, row, claim)
 
 
+def voronoi(folder):
+    """Particles inside their body: cells, animations, changes from an instant, published points."""
+    return fixture_voronoi.voronoi(folder, row, claim, frame, series, lattice, hexahedra)
+
+
 def write(folder):
     """The fixture's studies below `folder`."""
     for name, make in (("cube", cube), ("patch", patch), ("beam", beam), ("membrane", membrane),
-                       ("bar", tensile_bar), ("work", work)):
+                       ("bar", tensile_bar), ("work", work), ("voronoi", voronoi)):
         here = Path(folder) / f"fixture_{name}"
         here.mkdir(parents=True)
         data = {"name": here.name, "question": SIGN, "source": "tests/browser/fixture.py", "mode": "quick",
