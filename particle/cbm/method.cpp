@@ -1,10 +1,15 @@
 // Registration of the method `cbm`.
 
+#include "particle/cbm/fracture.hpp"
 #include "particle/core/particle_method.hpp"
 #include "particle/delaunay/delaunay.hpp"
 
+#include <fmt/format.h>
+
 namespace concord::particle::cbm {
 namespace {
+
+constexpr double default_beta = 0.5;  ///< Tables 3 and 4
 
 scene::ParameterInfo cells_parameter() {
   scene::ParameterInfo p;
@@ -31,12 +36,28 @@ scene::MethodInfo method_info() {
         "tangential contact stiffness K_t = xi_t G A_ab / L_ab, Eq. (60) of the Delaunay "
         "paper; "
         "the Continuum Bond Method has none",
-        0}}};
+        0},
+       {"beta", "1", fmt::format("{}", default_beta), ">= 0",
+        "artificial damping control parameter beta (21), in scenes with [fracture] only", 0}}};
+}
+
+[[noreturn]] void refuse(const scene::Problem& problem, const std::string& key,
+                         const scene::Settings& settings, const std::string& allowed) {
+  throw InputError({problem.file.string(), 0, 0}, "cbm." + key, settings.word(key), allowed);
+}
+
+std::unique_ptr<ForceModel> make_fracture(const Body& body, const scene::Problem& problem,
+                                          const scene::Settings& settings) {
+  for (const char* key : {"xi_n", "xi_t"}) {
+    if (settings.number(key) != 0)
+      refuse(problem, key, settings, "0 in a scene with [fracture]: contact does not break");
+  }
+  return std::make_unique<FractureModel>(body, problem, settings.number("beta"));
 }
 
 /// Bond vectors zeta_ip (9) are the gradient vectors B_ip of the Delaunay method, Omega_i (1)
-/// its volumes, and -(18) its pair force: see README.md. What is left is the choice of cells
-/// and that contact is off.
+/// its volumes, and -(18) its pair force: see README.md. What is left is the choice of cells,
+/// that contact is off, and fracture.
 class CbmMethod final : public ParticleMethod {
  public:
   CbmMethod() : ParticleMethod(method_info()) {}
@@ -46,6 +67,9 @@ class CbmMethod final : public ParticleMethod {
   std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                          const scene::Settings& settings,
                                          const Executor& executor) const override {
+    if (problem.fracture) return make_fracture(body, problem, settings);
+    if (settings.number("beta") != default_beta)
+      refuse(problem, "beta", settings, "0.5, its default, in a scene without [fracture]");
     delaunay::Parameters parameters;
     parameters.xi_n = settings.number("xi_n");
     parameters.xi_t = settings.number("xi_t");

@@ -15,13 +15,17 @@ struct BrokenBond {
   Index a, b;
 };
 
-/// What has broken so far.
+/// A simplex of the body that is gone.
+struct DeadSimplex {
+  double t;  ///< [s]; before_start: a pre-crack took it
+  Index simplex;
+};
+inline constexpr double before_start = -std::numeric_limits<double>::infinity();
+
+/// What has broken so far, in the order of times.
 struct FractureRecord {
-  static constexpr double never = std::numeric_limits<double>::infinity(),
-                          before_start = -std::numeric_limits<double>::infinity();
-  std::vector<BrokenBond> broken;  ///< in the order of their times
-  std::vector<double> death;       ///< of every simplex of the body [s]: never, before_start
-                                   ///< for those that a pre-crack took
+  std::vector<BrokenBond> broken;
+  std::vector<DeadSimplex> dead;
   double released = 0;  ///< energy that deletion took, with its effect on the step's kick [J]
 };
 

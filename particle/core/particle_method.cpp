@@ -44,6 +44,7 @@ struct Run {
       result.quantities[name] = value;
     result.samples = recorder.samples(state);
     recorder.add_hourglass(result);
+    recorder.add_cracks(result);
   }
 
   void statics() {
@@ -74,6 +75,9 @@ struct Run {
     options.end_time = problem.end_time;
     options.dt_factor = settings.number("dt_factor");
     options.dt_fixed = settings.number("dt");
+    const scene::Material& material = problem.material;
+    if (const double courant = settings.number("courant"); courant > 0)
+      options.dt_fixed = courant * request.h / std::sqrt(material.E / material.rho0);
     options.damping = settings.number("damping");
     options.frames = problem.frames;
     options.history_rows = problem.history_rows;
@@ -140,6 +144,8 @@ const std::vector<scene::ParameterInfo>& solver_parameters() {
        "linearised forces",
        1e-6, 1},
       {"dt", "s", "0", ">= 0", "fixed time step; 0: from dt_factor", 0},
+      {"courant", "1", "0", ">= 0",
+       "fixed time step over h/c_0, c_0 = sqrt(E/rho); 0: from dt or dt_factor", 0},
       {"damping", "1/s", "0", ">= 0",
        "mass-proportional damping rate c: force -c m v (0 on a static scene without duration: "
        "critical)",
@@ -188,6 +194,8 @@ void check_solver(const std::string& method, const scene::Problem& problem,
   };
   if (solver == "static" && !problem.is_static)
     reject(".solver", "static", "auto or explicit for a scene with an end_time");
+  if (settings.number("dt") > 0 && settings.number("courant") > 0)
+    reject(".courant", "above 0 beside a time step dt", "one of the two");
   if (settings.number("duration") > 0 && !(problem.is_static && solver == "explicit")) {
     reject(".duration", solver + " solver, or a scene with an end_time",
            "solver = explicit on a static scene");

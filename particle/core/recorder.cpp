@@ -14,8 +14,9 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                    const std::filesystem::path& folder, bool frames, bool dissipative)
     : m_problem(problem), m_model(model), m_executor(executor),
       m_quantities(problem, model, constraints), m_hourglass(model.body()),
-      m_free(constraints.dofs().empty()), m_dissipative(dissipative),
-      m_breaks(model.fracturing() != nullptr) {
+      m_free(constraints.dofs().empty()), m_dissipative(dissipative), m_folder(folder) {
+  if (const Fracturing* fracturing = model.fracturing())
+    m_crack.emplace(problem, model.body(), constraints, *fracturing);
   const ExternalLoads loads(problem, model);
   m_steady = !loads.depend_on_time();
   m_unloaded = loads.none();
@@ -31,13 +32,16 @@ std::vector<std::string> Recorder::columns() const {
                {"kinetic_energy_J", "internal_energy_J", "stabilisation_energy_J"});
   if (m_model.constitution().plastic()) names.emplace_back("plastic_work_J");
   if (m_dissipative) names.emplace_back("viscous_dissipation_J");
-  if (m_breaks) names.emplace_back("fracture_energy_J");
+  if (m_crack) names.emplace_back("fracture_energy_J");
   names.insert(names.end(), {"external_work_J", "energy_balance_J"});
   for (const char axis : {'x', 'y', 'z'})
     names.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
   for (const char axis : {'x', 'y', 'z'})
     names.push_back(fmt::format("angular_momentum_{}_kg_m2_s", axis));
-  if (!m_breaks) names.insert(names.end(), {"nonaffine_energy_share", "checkerboard"});
+  const std::vector<std::string> last =
+      m_crack ? CrackQuantities::columns()
+              : std::vector<std::string>{"nonaffine_energy_share", "checkerboard"};
+  names.insert(names.end(), last.begin(), last.end());
   return names;
 }
 
@@ -78,6 +82,7 @@ Balance Recorder::balance(const State& state) {
 
 void Recorder::follow(const Balance& b, const Vec3& impulse) {
   m_largest_energy = std::max(m_largest_energy, b.stored() + std::abs(b.external_work));
+  m_largest_work = std::max(m_largest_work, std::abs(b.external_work));
   m_energy_change = std::max(m_energy_change, std::abs(b.total() - m_first.total()));
   m_linear_change = std::max(m_linear_change, (b.linear - m_first.linear - impulse).norm());
   m_angular_change = std::max(m_angular_change, (b.angular - m_first.angular).norm());
@@ -98,21 +103,25 @@ void Recorder::follow(const Balance& b, const Roughness& roughness) {
 void Recorder::row(const State& state) {
   const Balance b = balance(state);
   if (!m_any) m_first = b;
+  m_last = b;
   m_any = true;
   const std::span<const Mat3> H = gradients(state);
   follow(b, state.impulse);
-  if (!m_breaks) follow(b, m_hourglass.measure(state.u, H));
+  if (!m_crack) follow(b, m_hourglass.measure(state.u, H));
   if (!m_history.active()) return;
   m_values.assign(1, state.t);
   m_quantities.append(state, H, m_values);
   m_values.insert(m_values.end(), {b.kinetic, b.internal, b.stabilisation});
   if (m_model.constitution().plastic()) m_values.push_back(b.plastic);
   if (m_dissipative) m_values.push_back(b.dissipation);
-  if (m_breaks) m_values.push_back(b.released);
+  if (m_crack) m_values.push_back(b.released);
   m_values.insert(m_values.end(), {b.external_work, b.total() - m_first.total()});
   m_values.insert(m_values.end(), b.linear.begin(), b.linear.end());
   m_values.insert(m_values.end(), b.angular.begin(), b.angular.end());
-  if (!m_breaks) m_values.insert(m_values.end(), {m_share, m_checkerboard});
+  if (m_crack)
+    m_crack->append(m_values);
+  else
+    m_values.insert(m_values.end(), {m_share, m_checkerboard});
   m_history.append(m_values);
 }
 
@@ -150,6 +159,12 @@ void Recorder::frame(const State& state) {
   std::vector<scene::FrameField> fields{
       {"displacement", 3, flat(u)}, {"velocity", 3, flat(v)}, {"volume", 1, volumes}};
   for (std::size_t k = 0; k < names.size(); ++k) fields.push_back({names[k], 1, values[k]});
+  std::vector<double> intact;
+  if (m_crack) {
+    intact.resize(body.bulk);
+    m_model.fracturing()->intact_share(intact);
+    fields.push_back({"intact_share", 1, intact});
+  }
   m_frames.write(state.t, x, fields);
 }
 
@@ -164,13 +179,23 @@ void Recorder::add_invariants(scene::Result& result, bool damped) const {
 }
 
 void Recorder::add_hourglass(scene::Result& result) const {
-  if (!m_any || m_breaks) return;
+  if (!m_any || m_crack) return;
   result.quantities["nonaffine_energy_share"] = m_share;
   result.quantities["nonaffine_energy_share_max"] = m_share_max;
   if (m_energy_sum > 0)
     result.quantities["nonaffine_energy_share_mean"] = m_nonaffine_sum / m_energy_sum;
   result.quantities["checkerboard"] = m_checkerboard;
   result.quantities["checkerboard_max"] = m_checkerboard_max;
+}
+
+void Recorder::add_cracks(scene::Result& result) {
+  if (!m_any || !m_crack) return;
+  for (const auto& [name, value] : m_crack->quantities()) result.quantities[name] = value;
+  if (m_largest_work > 0)
+    result.quantities["energy_residual"] = m_energy_change / m_largest_work;
+  const double lost = m_last.dissipation + m_last.released;
+  if (lost > 0) result.quantities["dissipated_share"] = lost / (lost + m_last.stored());
+  if (!m_folder.empty()) m_crack->write(m_folder / "crack.csv");
 }
 
 scene::Samples Recorder::samples(const State& state) {

@@ -2,6 +2,7 @@
 // What a particle run writes while it goes: history rows, frames, quantities of interest,
 // conservation.
 
+#include "particle/core/crack_quantities.hpp"
 #include "particle/core/hourglass.hpp"
 #include "particle/core/quantities.hpp"
 #include "scene/method.hpp"
@@ -49,6 +50,10 @@ class Recorder {
   /// (nonaffine_energy_share_mean). Nothing where bonds can break: across a crack it would
   /// measure the opening.
   void add_hourglass(scene::Result& result) const;
+  /// Where bonds can break: adds what the cracks measure (CrackQuantities), energy_residual,
+  /// the largest |energy_balance_J| over the largest |external work|, and dissipated_share of
+  /// the last row, dissipation + released over that + stored; writes crack.csv.
+  void add_cracks(scene::Result& result);
 
   /// Samples (particles with volumes) of a state.
   scene::Samples samples(const State& state);
@@ -68,15 +73,17 @@ class Recorder {
   Quantities m_quantities;
   Hourglass m_hourglass;
   bool m_free, m_steady, m_unloaded;  ///< no displacement condition; constant loads; no loads
-  bool m_dissipative, m_breaks;
+  bool m_dissipative;
+  std::optional<CrackQuantities> m_crack;  ///< where bonds can break
+  std::filesystem::path m_folder;
   scene::HistoryWriter m_history;
   scene::FrameWriter m_frames;
   std::vector<Mat3> m_H;
   std::vector<double> m_values;
   bool m_any = false;
-  Balance m_first;
-  double m_largest_energy = 0, m_energy_change = 0, m_linear_change = 0, m_angular_change = 0,
-         m_linear_scale = 0, m_angular_scale = 0;
+  Balance m_first, m_last;
+  double m_largest_energy = 0, m_largest_work = 0, m_energy_change = 0, m_linear_change = 0,
+         m_angular_change = 0, m_linear_scale = 0, m_angular_scale = 0;
   double m_share = 0, m_share_max = 0, m_checkerboard = 0, m_checkerboard_max = 0;
   double m_nonaffine_sum = 0, m_energy_sum = 0;  ///< over the rows [J]
 };

@@ -1,0 +1,143 @@
+#include "particle/core/crack_quantities.hpp"
+
+#include "scene/output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace concord::particle {
+namespace {
+
+/// Side branches count from this length on: three spacings of the branching study's plate, .5
+/// mm at 1/6 mm.
+constexpr double shortest_branch = 3;
+/// The mean speed is taken between these shares of the ligament: without the start, whose
+/// instant is not well defined, and without the end, whose stress waves come back.
+constexpr double from_share = 0.1, to_share = 0.9;
+
+}  // namespace
+
+double rayleigh_speed(const scene::Material& material, Dimension dimension) {
+  const double c_s = material.shear_wave_speed(), nu = material.nu;
+  const double c_p = dimension == Dimension::plane_stress
+                         ? std::sqrt(material.E / (material.rho0 * (1 - nu * nu)))
+                         : material.longitudinal_wave_speed();
+  const double ratio = (c_s / c_p) * (c_s / c_p);
+  double low = 0.1, high = 1;  // s; the function is positive below the root, negative above
+  for (int i = 0; i < 200 && low < high; ++i) {
+    const double s = 0.5 * (low + high);
+    const double value = 4 * std::sqrt(1 - s) * std::sqrt(1 - s * ratio) - (2 - s) * (2 - s);
+    if (s == low || s == high) break;
+    (value > 0 ? low : high) = s;
+  }
+  return c_s * std::sqrt(low);
+}
+
+CrackQuantities::CrackQuantities(const scene::Problem& problem, const Body& body,
+                                 const Constraints& constraints, const Fracturing& fracturing)
+    : m_problem(problem), m_fracturing(fracturing),
+      m_l(problem.fracture->length > 0 ? problem.fracture->length : body.h),
+      m_at_end(body.n, 0), m_held(body.n, 0) {
+  for (Index a = 0; a < body.n; ++a) m_body.X.push_back(body.position(a));
+  const std::vector<Index>& vertices = body.triangulation.simplices;
+  for (std::size_t t = 0; t < body.triangulation.size(); ++t)
+    m_body.triangles.push_back({vertices[3 * t], vertices[3 * t + 1], vertices[3 * t + 2]});
+  for (const PrescribedDof& dof : constraints.dofs()) m_held[dof.particle] = 1;
+  const scene::Fracture& fracture = *problem.fracture;
+  if (!fracture.arrival.empty()) {
+    for (const Index node : body.mesh.group_nodes(fracture.arrival, fracture.where))
+      m_at_end[body.particle[node]] = 1;
+  }
+  if (fracture.cracks.empty()) return;
+  const scene::PreCrack& crack = fracture.cracks.front();
+  m_start = CrackStart{crack.to, (crack.to - crack.from).normalized()};
+  for (const Vec3& X : m_body.X)
+    m_ligament = std::max(m_ligament, (X - m_start->tip).dot(m_start->direction));
+  m_tip.emplace(m_body, *m_start);
+}
+
+/// Takes in what has died since.
+void CrackQuantities::follow() {
+  const FractureRecord& record = m_fracturing.record();
+  for (; m_followed < record.dead.size(); ++m_followed) {
+    const DeadSimplex& dead = record.dead[m_followed];
+    if (dead.t != before_start) m_area += m_body.area(dead.simplex);
+    if (!m_tip) continue;
+    const double before = m_tip->advance();
+    m_tip->add(dead);
+    if (m_tip->advance() > before) m_advances.emplace_back(dead.t, m_tip->advance());
+  }
+  find_arrival();
+}
+
+/// First broken bond at a particle of the arrival group, away from prescribed particles.
+void CrackQuantities::find_arrival() {
+  const FractureRecord& record = m_fracturing.record();
+  for (; m_looked < record.broken.size() && !m_arrival; ++m_looked) {
+    const BrokenBond& bond = record.broken[m_looked];
+    const bool at_end = m_at_end[bond.a] != 0 || m_at_end[bond.b] != 0,
+               held = m_held[bond.a] != 0 || m_held[bond.b] != 0;
+    if (at_end && !held) m_arrival = bond.t;
+  }
+}
+
+/// Between the tip's first passing of both shares of the ligament; not a number before that.
+double CrackQuantities::mean_speed() const {
+  const auto passed = [&](double share) {
+    return std::find_if(m_advances.begin(), m_advances.end(),
+                        [&](const auto& at) { return at.second >= share * m_ligament; });
+  };
+  const auto from = passed(from_share), to = passed(to_share);
+  if (to == m_advances.end() || !(to->first > from->first)) return std::nan("");
+  return (to->second - from->second) / (to->first - from->first);
+}
+
+std::vector<std::string> CrackQuantities::columns() {
+  return {"broken_bonds", "dead_area_m2", "crack_advance_m"};
+}
+
+void CrackQuantities::append(std::vector<double>& values) {
+  follow();
+  values.insert(values.end(), {static_cast<double>(m_fracturing.record().broken.size()), m_area,
+                               m_tip ? m_tip->advance() : 0.0});
+}
+
+std::map<std::string, double> CrackQuantities::quantities() {
+  follow();
+  const FractureRecord& record = m_fracturing.record();
+  const Fragments parts = fragments(m_body, record.dead);
+  std::map<std::string, double> q{{"broken_bonds", static_cast<double>(record.broken.size())},
+                                  {"dead_area", m_area},
+                                  {"fragments", static_cast<double>(parts.pieces)},
+                                  {"isolated_particles", static_cast<double>(parts.isolated)}};
+  if (m_arrival) q["crack_arrival"] = *m_arrival;
+  if (!m_start) return q;
+  const CrackPaths paths = crack_paths(m_body, *m_start, record.dead, shortest_branch * m_l);
+  q["crack_advance"] = m_tip->advance();
+  q["crack_length"] = paths.main_length + paths.branches_length();
+  q["crack_branches"] = static_cast<double>(paths.branch_lengths.size());
+  q["crack_branches_length"] = paths.branches_length();
+  if (!paths.branch_angles.empty())
+    q["crack_branching_angle_deg"] = paths.mean_angle() * 180 / M_PI;
+  q["degree_of_branching"] = m_area / (m_l * m_ligament);
+  const double c_R = rayleigh_speed(m_problem.material, m_problem.dimension);
+  q["rayleigh_speed"] = c_R;
+  if (const double v = mean_speed(); std::isfinite(v)) {
+    q["crack_speed"] = v;
+    q["crack_speed_over_rayleigh"] = v / c_R;
+  }
+  return q;
+}
+
+void CrackQuantities::write(const std::filesystem::path& file) const {
+  scene::HistoryWriter writer(file, {"t_s", "x1_m", "y1_m", "x2_m", "y2_m", "x3_m", "y3_m"});
+  std::vector<double> row;
+  for (const DeadSimplex& dead : m_fracturing.record().dead) {
+    row.assign(1, dead.t == before_start ? 0.0 : dead.t);
+    for (const Index a : m_body.triangles[dead.simplex])
+      row.insert(row.end(), {m_body.X[a][0], m_body.X[a][1]});
+    writer.append(row);
+  }
+}
+
+}  // namespace concord::particle
