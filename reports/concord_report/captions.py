@@ -141,8 +141,8 @@ WIDEST, TALLEST = 330, 460  # of a panel on the page [CSS pixels]
 
 def panel_width(job, rows):
     """How wide a panel stands on the page at most: tall bodies take less, rows of them still less."""
-    tall = TALLEST if rows == 1 else 0.75 * TALLEST
-    return round(min(WIDEST, max(150, tall * job["width"] / job["height"])))
+    tall = TALLEST if rows == 1 else 0.75 * TALLEST if rows < 4 else 0.6 * TALLEST
+    return round(min(WIDEST, max(150, tall * job["width"] / job["height"])))  # `job`: the tallest
 
 
 def columns(whole, count):
@@ -151,7 +151,7 @@ def columns(whole, count):
     if in_rows(whole):
         return max(1, count // len(whole["times"]))
     wanted = number(whole.get("columns"))
-    if wanted and wanted >= 1:
+    if wanted and wanted >= 1 and count != 3:
         return min(int(wanted), count)
     if count <= 4:
         return count

@@ -19,8 +19,10 @@ def tables_of(study, cases):
 def _table(cases, entry):
     pairs = [(case, told) for told in entry.get("cases") or [] if (case := case_of(cases, told))]
     starts = [k > 0 and case.scene != pairs[k - 1][0].scene for k, (case, _) in enumerate(pairs)]
-    lines = [{"label": case.label, "start": start, "mark": swatch(case.method, case.style),
-              "cells": [_cell(told, level) for level in entry["levels"]]} for (case, told), start in zip(pairs, starts)]
+    scenes = {case.scene for case, _ in pairs}
+    end = f", {scenes.pop().replace('_', ' ')}" if len(scenes) == 1 else ""  # the title tells it
+    lines = [{"label": case.label.removesuffix(end), "start": start, "mark": swatch(case.method, case.style),
+              "cells": _cells(told, entry["levels"])} for (case, told), start in zip(pairs, starts)]
     name = name_and_unit(entry["quantity"])[0]
     time = TIMES.get(entry.get("time"), TIMES["wall_s"])
     cells = [cell for line in lines for cell in line["cells"]]
@@ -49,6 +51,13 @@ def sentence(words, cases):
 
 def _level(level):
     return f"{exact(100 * level)}\u202f%"
+
+
+def _cells(told, levels):
+    """What a case needs for each error. How far it came is told once, beside the first error that it does not reach."""
+    cells = [_cell(told, level) for level in levels]
+    return [{**c, "below": ""} if k and c["kind"] == "not" == cells[k - 1]["kind"] and c["below"] == cells[k - 1]["below"] else c
+            for k, c in enumerate(cells)]
 
 
 def _cell(told, level):

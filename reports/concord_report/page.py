@@ -37,9 +37,20 @@ def _plots(study, cases, store, warnings):
             out.append({"kind": "missing", "title": f"No {what}", "why": spec})
             continue
         drawing = plots.drawn(spec, f"{slug(study.name)}-p{number}", store)
-        out.append({"kind": plot["kind"], "title": variant_text(spec["title"]), "svg": drawing,
+        out.append({"kind": plot["kind"], "title": variant_text(spec["title"]), "svg": drawing, "labelled": plots.labelled(spec),
                     "note": spec.get("note", ""), "statement": plot.get("statement") or "", "source": plot.get("source") or ""})
     return out
+
+
+def _said_once(shown):
+    """The sentences that the notes of three or more have all in common, taken out of each of them."""
+    if len(shown) < 3:
+        return ""
+    told = [re.split(r"(?<=\.) (?=\S)", s["note"]) for s in shown]
+    common = [words for words in told[0] if words and all(words in one for one in told)]
+    for one, words in zip(shown, told):
+        one["note"] = " ".join(w for w in words if w not in common)
+    return " ".join(common)
 
 
 def _pictures(jobs, name):
@@ -70,7 +81,7 @@ def _group(group):
             "plain": drawn[0]["color"] == frames.PLAIN, "film": _film(drawn) if drawn[0]["film"] else None,
             "title": variant_text((whole or {}).get("caption") or ""),
             "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
-            "panel_width": captions.panel_width(drawn[0], -(-len(jobs) // (columns or 1))),
+            "panel_width": captions.panel_width(max(drawn, key=lambda j: j["height"] / j["width"]), -(-len(jobs) // (columns or 1))),
             "triad": [] if drawn[0]["view"]["flat"] else captions.triad(), "note": captions.note(drawn)}
     for k in range(0, len(jobs), columns) if captions.in_rows(whole) else ():
         there = [job for job in jobs[k:k + columns] if "missing" not in job]
@@ -128,7 +139,9 @@ def _tables(study, cases):
 def _study_view(study, cases, jobs, store, warnings, out):
     drawn = _plots(study, cases, store, warnings)
     groups, missing = _pictures(jobs, study.title)
-    shown = {int(k) for p in drawn if "svg" in p for k in re.findall(r'data-case="(\d+)"', p["svg"])}
+    shown = {int(k) for p in drawn if "svg" in p and not p["labelled"] for k in re.findall(r'data-case="(\d+)"', p["svg"])}
+    same = {p["kind"] for p in drawn}
+    compared = matched.tables_of(study, cases)
     return {
         "id": slug(study.name), "name": study.name, "title": study.title,
         "question": study.data.get("question") or "", "source": study.data.get("source") or "",
@@ -137,7 +150,9 @@ def _study_view(study, cases, jobs, store, warnings, out):
         "claims": sorted(map(_claim_view, study.claims), key=lambda c: c["verdict"] != "fail"), "plots": drawn,
         "key": [{"case": c.index, "label": c.label, "swatch": swatch(c.method, c.style)}
                 for c in cases if c.index in shown],
-        "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": matched.tables_of(study, cases),
+        "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": compared,
+        "plot_note": " ".join(filter(None, (_said_once([p for p in drawn if p["kind"] == k]) for k in sorted(same - {"missing"})))),
+        "matched_note": _said_once(compared),
         "groups": groups, "missing": missing, "tables": _tables(study, cases),
         "runs": tables.runs_table(study, cases), "run_count": len(study.rows),
         "fem": fronts.fem_note(cases),

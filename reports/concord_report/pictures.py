@@ -19,6 +19,7 @@ SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ b
 FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
 CODE = ("render", "render_vtk", "render_lines", "render_plane", "render_scatter", "render_cells", "plane_cells", "solid_cells",
         "voronoi_cells", "films", "frames", "palette")
+TALL = 0.5  # width over height of the narrowest drawing (render_vtk)
 WIDE = (1760, 1320)  # pixels of a solid body's drawing, alone and as a panel; the picture has half of it
 LONG = 1720  # pixels of a plane drawing's longer side; the picture has half of it
 
@@ -167,8 +168,8 @@ def _share_scales(jobs):
 
 
 def _view(job, alike, flat):
-    """What is seen: the extent of all bodies, or the crop. Where the bodies of a figure travel, the rows
-    of instants each have their own middle, and the largest of their extents."""
+    """What is seen: the extent of all bodies, or the crop. The rows of a figure with instants have one width and each the
+    height that it needs. Where the bodies travel, each row has its own middle."""
     room = max((0.6 if j["cells"] else 0.5) * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
     def extent(jobs):
         seen = [j["seen_flat" if flat else "seen"] for j in jobs]
@@ -185,6 +186,9 @@ def _view(job, alike, flat):
         a, b = ends[job["picture"].get("instant")]
         low = [(a[k] + b[k] - size[k]) / 2 for k in range(3)]
         high = [(a[k] + b[k] + size[k]) / 2 for k in range(3)]
+    a, b = ends[job["picture"].get("instant")]
+    if high[0] - low[0] > TALL * (b[1] - a[1]):  # a drawing has at least this shape: narrower, its scale would differ
+        low[1], high[1] = a[1], b[1]
     view = {"flat": flat, "low": low, "high": high}
     for k, along in enumerate("xy"):
         if flat and (job["crop"] or {}).get(along):

@@ -96,10 +96,14 @@ def plot_specs(study, cases):
     return out
 
 
+def labelled(spec):
+    """True for a plot that names its curves itself: it needs no key."""
+    return len(spec["curves"]) <= DIRECT or bool(spec.get("legend")) or any(c["case"] < 0 for c in spec["curves"])
+
+
 def drawn(spec, ident, store):
     """The SVG of a specification, from the cache where it is there."""
-    labelled = len(spec["curves"]) <= DIRECT or spec.get("legend") or any(c["case"] < 0 for c in spec["curves"])
-    spec = {**spec, "ident": ident, "labelled": labelled}
+    spec = {**spec, "ident": ident, "labelled": labelled(spec)}
     looks = [look(c["method"]) for c in spec["curves"]]
     key = cache.digest(spec, looks, cache.source_digest(*MODULES))
     found = store.get(key, ".svg")

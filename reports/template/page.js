@@ -39,21 +39,21 @@
   });
 
   document.querySelectorAll(".charts").forEach(function (charts) {
-    function pick(name) {
-      charts.classList.toggle("picking", name !== null);
-      charts.querySelectorAll("[data-case]").forEach(function (part) {
+    // Curves of cases are the same in all plots of a study; those of runs are each plot's own.
+    function pick(scope, name) {
+      scope.classList.toggle("picking", name !== null);
+      scope.querySelectorAll("[data-case]").forEach(function (part) {
         part.classList.toggle("on", part.dataset.case === name);
       });
     }
     charts.querySelectorAll("[data-case]").forEach(function (part) {
-      var name = part.dataset.case;
-      if (!charts.querySelector('.key [data-case="' + name + '"]')) return;
+      var name = part.dataset.case, scope = name[0] === "-" ? part.closest("svg") : charts;
       if (part.tagName === "LI") part.tabIndex = 0;
       ["mouseenter", "focus"].forEach(function (event) {
-        part.addEventListener(event, function () { pick(name); });
+        part.addEventListener(event, function () { pick(scope, name); });
       });
       ["mouseleave", "blur"].forEach(function (event) {
-        part.addEventListener(event, function () { pick(null); });
+        part.addEventListener(event, function () { pick(scope, null); });
       });
     });
   });

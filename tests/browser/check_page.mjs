@@ -68,7 +68,7 @@ const checks = {
       paper: getComputedStyle(document.body).backgroundColor,
       contents: getComputedStyle(document.querySelector('nav')).display,
       cut: [...document.querySelectorAll('table, svg.chart, img')]
-        .filter((e) => e.offsetParent !== null || e.tagName === 'svg')
+        .filter((e) => (e.offsetParent !== null || e.tagName === 'svg') && !e.closest('.screen')) // sheets show a part
         .filter((e) => e.getBoundingClientRect().right > document.documentElement.clientWidth + 1)
         .map((e) => e.caption?.textContent ?? e.getAttribute('aria-label') ?? e.tagName),
     }));

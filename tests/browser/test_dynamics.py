@@ -101,7 +101,10 @@ class Instants(unittest.TestCase):
         jobs = self.jobs("held", times=[0.5, 1])
         self.assertEqual([(j["time"], j["case"].method) for j in jobs],
                          [(0.5, "delaunay"), (0.5, "fem"), (0.996, "delaunay"), (0.996, "fem")])
-        self.assertEqual(len({json.dumps([j["view"], j["limits"]]) for j in jobs}), 1)
+        self.assertEqual(len({json.dumps(j["limits"]) for j in jobs}), 1)
+        self.assertEqual([jobs[k]["view"] for k in (0, 2)], [jobs[k]["view"] for k in (1, 3)])  # of a row
+        for end in ("low", "high"):  # all rows are as wide
+            self.assertEqual(len({j["view"][end][0] for j in jobs}), 1)
         self.assertEqual(jobs[0]["limits"], [0.0, 3.996])
         self.assertEqual(captions.columns(jobs[0]["whole"], 4), 2)
 
@@ -113,7 +116,7 @@ class Instants(unittest.TestCase):
         jobs = self.jobs("free", times=[0.5, 1])
         self.assertTrue(all(j["followed"] for j in jobs))
         low, high = (np.array([j["view"][k] for j in jobs]) for k in ("low", "high"))
-        self.assertLess(np.ptp(high - low, axis=0).max(), 1e-12)  # of one size
+        self.assertLess(np.ptp(high - low, axis=0)[[0, 2]].max(), 1e-12)  # of one width
         self.assertEqual(low[0].tolist(), low[1].tolist())
         self.assertGreater(np.abs(low[2] - low[0]).max(), 5)
         self.assertEqual(captions.row_text(0.5, jobs[:2]), "t = 0.5 s; bodies about x = 11.5 m, y = 0.500 m, z = 0.663 m")

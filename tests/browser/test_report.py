@@ -246,7 +246,7 @@ class Report(unittest.TestCase):
             self.assertNotIn(outside, html)
         self.assertIn("No picture of fem Q9 16", html)
         self.assertIn("no_such_column", html)
-        self.assertEqual(html.count("<img "), 29)
+        self.assertEqual(html.count("<img "), 42)
 
     def test_pictures_show_something(self):
         import base64
@@ -267,15 +267,15 @@ class Report(unittest.TestCase):
         self.assertIn("measured 5.90×10⁻⁸", failure.get("message"))
         self.assertIsNone(suites["fixture_patch"].find("testcase[@name='a']/failure"))
         self.assertIsNotNone(suites["fixture_cube"].find("testcase[@name='later']/skipped"))
-        self.assertEqual(sum(int(s.get("tests")) for s in root), 11)
+        self.assertEqual(sum(int(s.get("tests")) for s in root), 12)
 
     def test_summary_and_json(self):
         summary = (self.out / "summary.md").read_text()
-        self.assertIn("2 of 10 claims failed", summary)
+        self.assertIn("2 of 11 claims failed", summary)
         self.assertLess(summary.index("## Failed"), summary.index("## Fixture: beam"))
         data = json.loads((self.out / "report.json").read_text())
-        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 8, "fail": 2, "open": 1}))
-        self.assertEqual(len(data["studies"]), 6)
+        self.assertEqual((data["verdict"], data["claims"]), ("fail", {"pass": 9, "fail": 2, "open": 1}))
+        self.assertEqual(len(data["studies"]), 7)
 
     def test_second_time_is_the_same(self):
         before = (self.out / "index.html").read_bytes()
