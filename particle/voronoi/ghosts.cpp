@@ -2,6 +2,8 @@
 
 #include <Eigen/Dense>
 
+#include <fmt/format.h>
+
 namespace concord::particle::voronoi {
 namespace {
 
@@ -80,8 +82,8 @@ Vec3 offset_of(const Face& face, const Vec3& X_a, const Vec3& X_b) {
   return t.norm() <= 1e-12 * (X_b - X_a).norm() ? Vec3::Zero() : t;
 }
 
-Stars::Stars(const Cells& cells, const Boundary& boundary, std::span<const Vec3> X)
-    : m_cells(cells), m_boundary(boundary), m_X(X) {
+Stars::Stars(const Body& body, const Cells& cells, const Boundary& boundary)
+    : m_body(body), m_cells(cells), m_boundary(boundary) {
   const Index n = particles();
   m_begin.assign(n + 1, 0);
   m_begin_wall.assign(n + 1, 0);
@@ -102,22 +104,25 @@ Stars::Stars(const Cells& cells, const Boundary& boundary, std::span<const Vec3>
 Star Stars::operator()(Index a) const {
   Star star;
   star.a = a;
+  const Vec3 X_a = m_body.position(a);
   star.V = m_cells.V[a];
   for (Index k = m_begin[a]; k < m_begin[a + 1]; ++k) {
     const Face& face = m_cells.faces[m_face[k]];
     const Index b = face.a == a ? face.b : face.a;
-    star.neighbours.push_back(
-        {b, m_X[b] - m_X[a], offset_of(face, m_X[face.a], m_X[face.b]), face.A});
+    const Vec3 X_b = m_body.position(b);
+    // In the order of the face, so that t_ab has the same bits from both sides.
+    const Vec3 t = a < b ? offset_of(face, X_a, X_b) : offset_of(face, X_b, X_a);
+    star.neighbours.push_back({b, X_b - X_a, t, face.A});
   }
   for (Index k = m_begin_wall[a]; k < m_begin_wall[a + 1]; ++k) {
     const BoundaryPiece& piece = m_boundary.pieces[k];
     const Face& face = m_cells.faces[piece.face];
     const Wall& wall = m_cells.walls[face.wall];
-    const double distance = wall.offset - wall.N.dot(m_X[a]);
+    const double distance = wall.offset - wall.N.dot(X_a);
     Ghost ghost;
     ghost.N = wall.N;
     ghost.X = 2 * distance * wall.N;
-    const Vec3 W = m_X[a] + distance * wall.N;
+    const Vec3 W = X_a + distance * wall.N;
     if (!coincide(face.C, W, distance)) ghost.t = face.C - W;
     ghost.A = face.A;
     ghost.D = piece.D;
@@ -144,6 +149,35 @@ GhostSystem solve_ghosts(const Star& star) {
   }
   system.determined = solve(star, K, Q, system);
   return system;
+}
+
+GhostSystems solve_all_ghosts(const Stars& stars, const SourcePosition& where,
+                              const Executor& executor) {
+  GhostSystems all;
+  all.row.assign(stars.particles(), -1);
+  for (Index a = 0; a < stars.particles(); ++a) {
+    if (!stars.at_wall(a)) continue;
+    all.row[a] = static_cast<Index>(all.particle.size());
+    all.particle.push_back(a);
+  }
+  all.system.resize(all.particle.size());
+  executor.for_pieces(all.particle.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      all.system[k] = solve_ghosts(stars(all.particle[k]));
+  });
+  for (std::size_t k = 0; k < all.particle.size(); ++k) {
+    if (all.system[k].determined) continue;
+    const Vec3 X = stars.body().position(all.particle[k]);
+    throw InputError(
+        where, "geometry",
+        fmt::format("particle {} at ({:.4g}, {:.4g}, {:.4g}) m with too few "
+                    "neighbours: they and the prescribed faces of its cell do not "
+                    "span the space in which its ghosts move",
+                    all.particle[k], X[0], X[1], X[2]),
+        "at least two layers of particles between free faces (a finer resolution), "
+        "or planes of symmetry on both sides of one layer");
+  }
+  return all;
 }
 
 }  // namespace concord::particle::voronoi

@@ -3,6 +3,7 @@
 // from prescribed displacements and, where free, from least squares (Sec. 2.4 of the paper),
 // here with the exact constrained minimiser.
 
+#include "particle/core/body.hpp"
 #include "particle/voronoi/boundary_pieces.hpp"
 
 #include <vector>
@@ -46,15 +47,16 @@ struct Star {
 class Stars {
  public:
   /// Keeps references to its arguments.
-  Stars(const Cells& cells, const Boundary& boundary, std::span<const Vec3> X);
+  Stars(const Body& body, const Cells& cells, const Boundary& boundary);
   Star operator()(Index a) const;
   bool at_wall(Index a) const { return m_begin_wall[a] < m_begin_wall[a + 1]; }
   Index particles() const { return static_cast<Index>(m_cells.V.size()); }
+  const Body& body() const { return m_body; }
 
  private:
+  const Body& m_body;
   const Cells& m_cells;
   const Boundary& m_boundary;
-  std::span<const Vec3> m_X;
   std::vector<Index> m_begin, m_face;  ///< interior faces of each particle
   std::vector<Index> m_begin_wall;     ///< pieces of each particle, in Boundary::pieces
 };
@@ -76,5 +78,16 @@ struct GhostSystem {
 /// 1), ghosts behind planes of symmetry or antisymmetry become true mirror images, which have
 /// no free component; where that does not help either, `determined` is false.
 GhostSystem solve_ghosts(const Star& star);
+
+/// The ghost systems of all particles at walls, ascending.
+struct GhostSystems {
+  std::vector<Index> particle;
+  std::vector<GhostSystem> system;
+  std::vector<Index> row;  ///< of each particle, or -1
+};
+
+/// Throws InputError at `where` for the first particle whose ghosts are undetermined.
+GhostSystems solve_all_ghosts(const Stars& stars, const SourcePosition& where,
+                              const Executor& executor);
 
 }  // namespace concord::particle::voronoi

@@ -31,20 +31,21 @@ struct Parameters {
 /// reaction in the others.
 class VoronoiModel final : public ForceModel {
  public:
-  /// Throws InputError where ghosts of a particle are undetermined (a layer of one particle
-  /// between free faces).
+  /// `body`, `cells` and `boundary` must outlive the object. Throws InputError where ghosts of
+  /// a particle are undetermined (a layer of one particle between free faces).
   VoronoiModel(const Body& body, const scene::Problem& problem, const Cells& cells,
                const Boundary& boundary, const Parameters& parameters,
                const Executor& executor = Executor(1));
   ~VoronoiModel() override;
 
-  /// Loads of all traction conditions: (VOR.20) in the face-compatible form, A T on the
+  /// The adjoint of the face's displacement (VOR.13) in the face-compatible form, A T on the
   /// particle in the others (39).
   const std::vector<LoadTerm>& load_terms() const override;
 
   void forces(std::span<const double> u, std::span<const double> v, std::span<double> f,
               const Executor& executor) override;
   Energies energies(std::span<const double> u, const Executor& executor) override;
+  /// Boundary points have the gradient of their particle.
   void gradients(std::span<const double> u, std::span<Mat3> H) override;
   const Stiffness& tangent(std::span<const double> u) override;
   bool has_potential() const override;

@@ -1,0 +1,207 @@
+#pragma once
+// The second half of the loops: stresses, and forces by the adjoints of both gradients.
+
+#include "particle/voronoi/kernels.hpp"
+#include "particle/voronoi/voronoi.hpp"
+
+namespace concord::particle::voronoi {
+
+/// P_a of [first, last) in place of H_a. Returns the first particle with det F <= 0 or NaN, or
+/// -1.
+template <int Dim, StressLaw Law>
+CONCORD_CLONES Index stress_rows(const StressConstants& c, Index first, Index last,
+                                 Window<Dim> H) {
+  Index bad_particle = -1;
+  for (Index a = first; a < last; a += stress_width) {
+    const int count = std::min<Index>(stress_width, last - a);
+    double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width];
+    Tensor<Dim> tensor[stress_width];
+    for (int l = 0; l < stress_width; l += 4) {
+      const double* record[4];
+      for (int i = 0; i < 4; ++i) record[i] = H.at(a + std::min(l + i, count - 1));
+      tensors_to_lanes<Dim>(record, l, h);
+    }
+    const unsigned bad = stress_of_lanes<Dim, Law>(c, a, count, h, p);
+    for (int l = 0; l < stress_width; l += 4) lanes_to_tensors<Dim>(p, l, tensor + l);
+    for (int l = 0; l < count; ++l) tensor[l].store(H.at(a + l));
+    if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
+  }
+  return bad_particle;
+}
+
+/// Where forces on boundary points go; null in rows that belong to another part.
+struct PointForces {
+  double* f;
+  template <int Dim> CONCORD_INLINE void set(Index p, Vec<Dim> value) const {
+    if (f) store(f + static_cast<std::size_t>(p) * Lanes<Dim>::stride, value);
+  }
+  template <int Dim> CONCORD_INLINE void subtract(Index p, Vec<Dim> value) const {
+    if (f) set<Dim>(p, point_of<Dim>(f, p) - value);
+  }
+};
+
+/// Walls of particle a in the adjoint of (VOR.10): tau = P_a A_ag gives D tau to the particle
+/// and -D tau to the boundary point; rho = (I - D) tau goes to Y_a, -2 rho (x) t_ag, and rho/2
+/// to the dual of u_ag.
+template <int Dim>
+CONCORD_INLINE void face_walls(const Ghosts<Dim>& ghosts, Index a, const Tensor<Dim>& P_a,
+                               GhostVectors<Dim> vectors, const PointForces& points,
+                               Tensor<Dim>& Y_a, Vec<Dim>& f_a) {
+  for (Index g = ghosts.begin[a]; g < ghosts.begin[a + 1]; ++g) {
+    const GhostRecord<Dim>& ghost = ghosts.record[g];
+    Vec<Dim> rho = P_a.times(ghost.A);
+    if (ghost.prescribed()) {
+      const Vec<Dim> reaction = ghost.D.times(rho);
+      f_a += reaction;
+      rho -= reaction;
+      points.set<Dim>(ghost.wall, Vec<Dim>{});
+      points.set<Dim>(ghost.centroid, -reaction);
+    }
+    Y_a.add_outer(-(rho + rho), ghost.t);
+    store(vectors.tau(g), load<Vec<Dim>>(vectors.tau(g)) + rho * broadcast(0.5, Vec<Dim>{}));
+  }
+}
+
+/// Walls of particle a in the paper's forms: reactions D P A and 2 r_g of contact (46), against
+/// them the forces on the boundary points. r_g has then done its duty: T^T r_g = 0.
+template <int Dim>
+CONCORD_INLINE void paper_walls(const Ghosts<Dim>& ghosts, Index a, const Tensor<Dim>& P_a,
+                                GhostVectors<Dim> vectors, const PointForces& points,
+                                Vec<Dim>& f_a) {
+  for (Index g = ghosts.begin[a]; g < ghosts.begin[a + 1]; ++g) {
+    const GhostRecord<Dim>& ghost = ghosts.record[g];
+    if (!ghost.prescribed()) continue;
+    const Vec<Dim> reaction = ghost.D.times(P_a.times(ghost.A));
+    const Vec<Dim> r = load<Vec<Dim>>(vectors.tau(g));
+    f_a += reaction + (r + r);
+    points.set<Dim>(ghost.wall, Vec<Dim>{});
+    points.set<Dim>(ghost.centroid, -reaction);
+    points.subtract<Dim>(ghost.wall, r + r);
+    store(vectors.tau(g), Vec<Dim>{});
+  }
+}
+
+/// tau_g += Y_a B_ag / V_a.
+template <int Dim>
+CONCORD_INLINE void ghost_duals(const Ghosts<Dim>& ghosts, Index a, const Tensor<Dim>& Y_a,
+                                GhostVectors<Dim> vectors) {
+  for (Index g = ghosts.begin[a]; g < ghosts.begin[a + 1]; ++g) {
+    double* tau = vectors.tau(g);
+    store(tau, load<Vec<Dim>>(tau) + Y_a.times(ghosts.record[g].B));
+  }
+}
+
+/// Adjoint of (VOR.9): with S = A_ab/L_ab, f_a += S (P_a + P_b) X_ab / 2, and -2 Y_a, -2 Y_b +=
+/// S (P_b - P_a) X_ab (x) t_ab. The rows' own particles are complete after it: Y_a becomes
+/// dW/dH^V_a / V_a. In the paper's forms no bonds: Y_a / V_a + P_a.
+template <int Dim, Form form>
+CONCORD_CLONES void dual_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
+                              Index last, const double* inverse_V, Window<Dim> P, Window<Dim> Y,
+                              GhostVectors<Dim> vectors, PointForces points) {
+  const Index *begin = bonds.begin.data(), *other = bonds.other.data();
+  const double* shapes = bonds.shape.data();
+  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
+  for (Index a = first; a < last; ++a) {
+    double* record = Y.at(a);
+    const Tensor<Dim> P_a = Tensor<Dim>::load(P.at(a));
+    const Vec<Dim> X_a = load<Vec<Dim>>(P.at(a) + vector_at<Dim>);
+    Tensor<Dim> Y_a = Tensor<Dim>::load(record);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    if constexpr (form == Form::face_compatible) {
+      for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+        const double* P_b = P.at(other[k]);
+        double* Y_b = Y.at(other[k]);
+        const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
+        const Vec<Dim> A = (load<Vec<Dim>>(P_b + vector_at<Dim>) - X_a) *
+                           broadcast(shape[ratio_at], Vec<Dim>{});
+        const Vec<Dim> from_a = P_a.times(A), from_b = Tensor<Dim>::load(P_b).times(A);
+        const Vec<Dim> flux = (from_a + from_b) * half, jump = from_b - from_a;
+        f_a += flux;
+        store(Y_b + vector_at<Dim>, load<Vec<Dim>>(Y_b + vector_at<Dim>) - flux);
+        const Vec<Dim> t = load<Vec<Dim>>(shape);
+        Y_a.add_outer(jump, t);
+        scatter_outer<Dim>(Y_b, jump, t);
+      }
+      face_walls<Dim>(ghosts, a, P_a, vectors, points, Y_a, f_a);
+    } else {
+      paper_walls<Dim>(ghosts, a, P_a, vectors, points, f_a);
+    }
+    for (auto& column : Y_a.column) column *= broadcast(-0.5 * inverse_V[a], Vec<Dim>{});
+    if constexpr (form == Form::quasi_static)  // (42): ghosts depend on nothing, but in contact
+      ghost_duals<Dim>(ghosts, a, Y_a, vectors);
+    if constexpr (form != Form::face_compatible) {
+      for (int k = 0; k < Dim; ++k) Y_a.column[k] += P_a.column[k];
+    }
+    if constexpr (form != Form::quasi_static) ghost_duals<Dim>(ghosts, a, Y_a, vectors);
+    Y_a.store(record);
+    store(record + vector_at<Dim>, f_a);
+  }
+}
+
+/// Adjoint of (VOR.6): f_a += sum_g T^T tau_g for bonds, R^T tau_g for walls; these only where
+/// prescribed places count as the particle's own business, which they do not in the paper.
+template <int Dim, class Map>
+CONCORD_INLINE void ghost_bonds(const GhostCursor<Dim>& cursor, GhostVectors<Dim> vectors,
+                                Window<Dim> Y, Vec<Dim>& f_a) {
+  const Ghosts<Dim>& ghosts = cursor.ghosts;
+  for (Index k = ghosts.T_begin[cursor.row], end = ghosts.T_begin[cursor.row + 1]; k < end;
+       ++k) {
+    double* f_b = Y.at(ghosts.T_other[k]) + vector_at<Dim>;
+    const Vec<Dim> share =
+        Map::transpose_times(&ghosts.T[static_cast<std::size_t>(k) * Map::size],
+                             load<Vec<Dim>>(vectors.tau(ghosts.T_ghost[k])));
+    f_a += share;
+    store(f_b, load<Vec<Dim>>(f_b) - share);
+  }
+}
+
+template <int Dim, class Map>
+CONCORD_INLINE void ghost_walls(const Ghosts<Dim>& ghosts, Index a, GhostVectors<Dim> vectors,
+                                const PointForces& points, Vec<Dim>& f_a) {
+  for (Index g = ghosts.begin[a]; g < ghosts.begin[a + 1]; ++g) {
+    const Vec<Dim> tau = load<Vec<Dim>>(vectors.tau(g));
+    for (Index k = ghosts.R_begin[g]; k < ghosts.R_begin[g + 1]; ++k) {
+      const Vec<Dim> share =
+          Map::transpose_times(&ghosts.R[static_cast<std::size_t>(k) * Map::size], tau);
+      f_a += share;
+      points.subtract<Dim>(ghosts.R_wall[k], share);
+    }
+  }
+}
+
+/// Adjoint of (6): f_a += sum_b Y_a B_ab - Y_b B_ba + ghosts, Y the tensors that dual_rows
+/// left. The rows' own particles are complete after it.
+template <int Dim, class Map>
+CONCORD_CLONES void force_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
+                               Index last, const double* X, Window<Dim> Y,
+                               GhostVectors<Dim> vectors, bool walls, PointForces points) {
+  GhostCursor<Dim> cursor(ghosts, first);
+  const Index *begin = bonds.begin.data(), *other = bonds.other.data();
+  const double* shapes = bonds.shape.data();
+  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
+  for (Index a = first; a < last; ++a) {
+    double* record = Y.at(a);
+    const Tensor<Dim> Y_a = Tensor<Dim>::load(record);
+    const Vec<Dim> X_a = point_of<Dim>(X, a);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
+      double* Y_b = Y.at(other[k]);
+      const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
+      const Vec<Dim> t = load<Vec<Dim>>(shape),
+                     middle = (point_of<Dim>(X, other[k]) - X_a) * half;
+      const Vec<Dim> force =
+          (Y_a.times(middle + t) + Tensor<Dim>::load(Y_b).times(middle - t)) *
+          broadcast(shape[ratio_at], Vec<Dim>{});
+      f_a += force;
+      store(Y_b + vector_at<Dim>, load<Vec<Dim>>(Y_b + vector_at<Dim>) - force);
+    }
+    if (cursor.at(a)) {
+      ghost_bonds<Dim, Map>(cursor, vectors, Y, f_a);
+      ++cursor.row;
+    }
+    if (walls) ghost_walls<Dim, Map>(ghosts, a, vectors, points, f_a);
+    store(record + vector_at<Dim>, f_a);
+  }
+}
+
+}  // namespace concord::particle::voronoi
