@@ -71,7 +71,10 @@ double prescribed_value(const scene::Problem& problem, const Body& body,
   if (dof.condition < 0) return 0;
   const scene::BoundaryCondition& bc = problem.boundaries[dof.condition];
   if (bc.kind != scene::BoundaryKind::displacement) return 0;
-  return problem.boundary_value(bc, body.position(dof.particle), t, dof.normal)[dof.component];
+  const scene::VectorExpression& u =
+      bc.value_from_exact ? *problem.exact_displacement : bc.value;
+  const auto& component = u.component[dof.component];
+  return component ? (*component)(body.position(dof.particle), t) : 0.0;
 }
 
 }  // namespace
