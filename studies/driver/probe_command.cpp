@@ -66,7 +66,7 @@ int probe_command(const ProbeOptions& options) {
   const Given given = sort_settings(options);
   const scene::Settings settings(options.method, method.info().parameters, given.of_method);
   const scene::Settings chosen = probe_options(options, probe);
-  const scene::Problem problem = scene::read_problem(options.scene, given.of_scene);
+  const scene::Problem problem = problem_of(options.scene, given, options.seed);
   const fs::path out =
       options.out.empty()
           ? build_home() / "probes" / (options.test + "-" + problem.name + "-" + options.method)
@@ -77,7 +77,7 @@ int probe_command(const ProbeOptions& options) {
                               problem.dim(), options.resolution, options.perturb,
                               options.seed};
   probes::ProbeRequest request{problem, method, run_request(options, problem, given, out),
-                               chosen};
+                               chosen, cache_folder() / "references" / build_hash("fem", true)};
   Progress progress(options.test + ", " + problem.name + ", " + options.method);
   request.run.progress = [&progress](double done, const std::string& what) {
     progress.update(done, what);

@@ -28,6 +28,9 @@ struct ProbeRequest {
   const scene::Method& method;
   scene::RunRequest run;
   scene::Settings options;
+  /// Where a probe may keep what probes of other methods need too (reference solutions), under
+  /// names that tell its content; the folder changes with the code. Empty: nowhere.
+  std::filesystem::path keep{};
 
   /// The method's body of this request, or of `other` (another seed, perturbation, spacing).
   /// Throws InputError for a method that cannot show one.
