@@ -38,7 +38,10 @@ void add_problem(CLI::App* command, RunOptions& options, const char* out) {
       ->add_option("--perturb", options.perturb,
                    "random displacement of particles, fraction of h")
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "of the perturbation")->capture_default_str();
+  command
+      ->add_option("--seed", options.seed,
+                   "of the perturbation, or of what else the scene arranges by it")
+      ->capture_default_str();
   command->add_option("--threads", options.threads)->capture_default_str();
   command->add_option("--set", options.set, "key=value of the scene, or METHOD.key=value")
       ->take_all();

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace concord::studies {
@@ -36,6 +37,17 @@ Given sort_settings(const RunOptions& options) {
     }
   }
   return given;
+}
+
+scene::Problem problem_of(const std::string& scene, const Given& given, std::uint64_t seed) {
+  scene::Problem problem = scene::read_problem(scene, given.of_scene);
+  const std::string key = "parameters.seed";
+  const bool told = std::any_of(given.of_scene.begin(), given.of_scene.end(),
+                                [&](const scene::Override& set) { return set.first == key; });
+  if (told || !problem.parameters.contains("seed")) return problem;
+  std::vector<scene::Override> overrides = given.of_scene;
+  overrides.emplace_back(key, std::to_string(seed));
+  return scene::read_problem(scene, overrides);
 }
 
 void check_numbers(const RunOptions& options) {

@@ -79,9 +79,10 @@ WorkTime read_work_time(StrictTable& table) {
 
 Pool read_pool(StrictTable& table) {
   const Pool by_default = Pool::max;
-  return choose<Pool>(table, "over_seeds",
-                      {{"max", Pool::max}, {"min", Pool::min}, {"mean", Pool::mean}},
-                      &by_default);
+  return choose<Pool>(
+      table, "over_seeds",
+      {{"max", Pool::max}, {"min", Pool::min}, {"mean", Pool::mean}, {"range", Pool::range}},
+      &by_default);
 }
 
 Signal read_signal(StrictTable table) {
@@ -101,6 +102,7 @@ Signal read_signal(StrictTable table) {
   signal.prominence = table.number_or("prominence", signal.prominence);
   if (!(signal.prominence > 0 && signal.prominence < 1))
     table.reject(*table.node("prominence"), "a fraction of the record's range, 0 to 1");
+  if (table.node("from")) signal.from = table.number_or("from", 0);
   signal.selector = read_selector(table);
   table.finish();
   return signal;

@@ -10,15 +10,16 @@
 
 namespace concord::studies {
 
-/// How the runs selected make one number.
-enum class Pool { max, min, mean };
+/// How the runs selected make one number; range: max - min.
+enum class Pool { max, min, mean, range };
 
 /// Numbers of a column of history.csv, see signals.hpp.
 struct Signal {
   std::string name, column;
   std::vector<std::string> features;
-  double level = 0;          ///< of the period, in the column's unit
-  double prominence = 0.05;  ///< of a peak, fraction of the record's range; ours: no source
+  double level = 0;            ///< of the period, in the column's unit
+  double prominence = 0.05;    ///< of a peak, fraction of the record's range; ours: no source
+  std::optional<double> from;  ///< [s]: samples before it do not count; absent: all count
   Selector selector;
   SourcePosition where;
 };

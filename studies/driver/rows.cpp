@@ -79,8 +79,10 @@ bool balances_close(const Study& study, const std::vector<Row>& rows, std::size_
 const char* balance_text(bool closes) { return closes ? "closes" : "does not close"; }
 
 double pool_of(const std::vector<double>& values, Pool pool) {
-  if (pool == Pool::max) return *std::max_element(values.begin(), values.end());
-  if (pool == Pool::min) return *std::min_element(values.begin(), values.end());
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  if (pool == Pool::max) return *most;
+  if (pool == Pool::min) return *least;
+  if (pool == Pool::range) return *most - *least;
   double sum = 0;
   for (const double value : values) sum += value;
   return sum / static_cast<double>(values.size());

@@ -59,7 +59,7 @@ int run_command(const RunOptions& options) {
   const scene::Method& method = scene::MethodRegistry::instance().find(options.method);
   const Given given = sort_settings(options);
   const scene::Settings settings(options.method, method.info().parameters, given.of_method);
-  const scene::Problem problem = scene::read_problem(options.scene, given.of_scene);
+  const scene::Problem problem = problem_of(options.scene, given, options.seed);
   const fs::path out = options.out.empty()
                            ? build_home() / "runs" / (problem.name + "-" + options.method)
                            : options.out;

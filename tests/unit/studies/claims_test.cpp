@@ -32,6 +32,7 @@ TEST(Claims, PoolOverSeeds) {
   EXPECT_NEAR(*judge_one(study, value_claim(4, Pool::max), rows).measured, 1.2 / 16, 1e-15);
   EXPECT_NEAR(*judge_one(study, value_claim(4, Pool::min), rows).measured, 1.1 / 16, 1e-15);
   EXPECT_NEAR(*judge_one(study, value_claim(4, Pool::mean), rows).measured, 1.15 / 16, 1e-15);
+  EXPECT_NEAR(*judge_one(study, value_claim(4, Pool::range), rows).measured, 0.1 / 16, 1e-15);
   Claim all = value_claim(4, Pool::max);
   all.resolution.reset();
   EXPECT_NEAR(*judge_one(study, all, rows).measured, 1.2 / 16, 1e-15);
