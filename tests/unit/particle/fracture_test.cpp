@@ -1,0 +1,266 @@
+// Bonds that break: the network against a rebuilt one, forces, energy account, whole runs.
+
+#include "particle/cbm/fracture.hpp"
+#include "particle/core/leapfrog.hpp"
+#include "particle/delaunay/delaunay.hpp"
+#include "scene/reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+namespace concord::particle::cbm {
+namespace {
+
+scene::Problem plate(const std::vector<scene::Override>& more = {}) {
+  std::vector<scene::Override> set{{"parameters.width", "20 mm"},
+                                   {"parameters.crack", "10 mm"},
+                                   {"parameters.strip", "4 mm"}};
+  set.insert(set.end(), more.begin(), more.end());
+  return scene::read_problem("pmma_plate", set);
+}
+Body body_of(const scene::Problem& problem) {
+  return make_body(problem, 0.5e-3, 0, 1, CellSource::mesh);
+}
+
+Column random_column(const Body& body, double size, unsigned seed) {
+  Column c(body.X.size());
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  for (double& x : c) x = uniform(generator);
+  return c;
+}
+
+/// Some triangles in a heap around a particle, so that it is left alone, and single ones.
+std::vector<Index> some_triangles(const Body& body, Index lone) {
+  std::vector<Index> list;
+  for (Index t = 0; t < static_cast<Index>(body.triangulation.size()); ++t) {
+    const Index* v = &body.triangulation.simplices[3 * static_cast<std::size_t>(t)];
+    if (v[0] == lone || v[1] == lone || v[2] == lone || t % 97 == 3) list.push_back(t);
+  }
+  return list;
+}
+
+constexpr Index lone = 300;
+
+/// A model whose network has lost these triangles: by strains of bonds of such a body.
+void damage(FractureModel& model, const Body& body) {
+  Column u(body.X.size(), 0.0), v = u, f = u;
+  for (int i = 0; i < 2; ++i) u[2 * lone + i] = 0.1 * body.h;
+  model.advance(1e-6, 1e-8, u, v, f, Executor(1));
+}
+
+}  // namespace
+
+TEST(FractureNetwork, BondVectorsAndVolumesAreThoseOfTheTrianglesLeft) {
+  const scene::Problem problem = plate();
+  const Body body = body_of(problem);
+  Network network(body);
+  const std::vector<Index> dead = some_triangles(body, lone);
+  const std::vector<Index> loose = network.remove(dead);
+  Body left = body;
+  left.triangulation.simplices.clear();
+  std::vector<double> omega(body.n, 0.0);
+  for (Index t = 0; t < static_cast<Index>(body.triangulation.size()); ++t) {
+    if (!network.alive(t)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const Index a = body.triangulation.simplices[3 * static_cast<std::size_t>(t) + i];
+      left.triangulation.simplices.push_back(a);
+      omega[a] += body.thickness / 3 * body.simplex_volume(t);
+    }
+  }
+  left.triangulation.on_boundary.assign(body.n, 1);  // no antisymmetry is assumed
+  std::map<std::pair<Index, Index>, delaunay::Bond> expected;
+  for (const delaunay::Bond& bond : delaunay::gradient_vectors(left))
+    expected[{bond.a, bond.b}] = bond;
+  std::size_t found = 0;
+  for (Index k = 0; k < static_cast<Index>(network.bonds()); ++k) {
+    const double* zeta = network.zeta() + 4 * static_cast<std::size_t>(k);
+    const auto bond = expected.find({network.first(k), network.second(k)});
+    EXPECT_EQ(network.connected(k), bond != expected.end());
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_NEAR(zeta[i], bond == expected.end() ? 0 : bond->second.B_ab[i], 1e-13 * body.h);
+      EXPECT_NEAR(zeta[2 + i], bond == expected.end() ? 0 : bond->second.B_ba[i],
+                  1e-13 * body.h);
+    }
+    found += bond != expected.end();
+  }
+  EXPECT_EQ(found, expected.size());
+  EXPECT_FALSE(loose.empty());
+  for (Index a = 0; a < body.n; ++a) {
+    EXPECT_NEAR(network.omega()[a], omega[a], 1e-14 * body.V[a]);
+  }
+  EXPECT_EQ(network.inverse_omega()[lone], 0);
+}
+
+TEST(FractureModel, UnbrokenItIsTheMethodWithoutFracture) {
+  scene::Problem problem = plate();
+  problem.fracture->cracks.clear();
+  problem.fracture->energy_release_rate = 1e9;
+  const Body body = body_of(problem);
+  FractureModel model(body, problem, 0.5);
+  delaunay::Parameters parameters;
+  parameters.xi_n = parameters.xi_t = 0;
+  delaunay::DelaunayModel plain(body, problem, parameters);
+  const Column u = random_column(body, 0.02 * body.h, 1), still(body.X.size(), 0.0);
+  Column f = still, expected = still;
+  model.advance(0, 0, u, still, f, Executor(1));
+  plain.forces(u, still, expected, Executor(1));
+  double scale = 0;
+  for (const double x : expected) scale = std::max(scale, std::abs(x));
+  for (std::size_t k = 0; k < f.size(); ++k) EXPECT_NEAR(f[k], expected[k], 1e-12 * scale);
+  EXPECT_NEAR(model.energies(u, Executor(1)).internal, plain.energies(u, Executor(1)).internal,
+              1e-12 * plain.energies(u, Executor(1)).internal);
+  EXPECT_TRUE(model.record().broken.empty());
+}
+
+TEST(FractureModel, DamagedForcesAreMinusTheGradientOfTheEnergy) {
+  const scene::Problem problem = plate();
+  const Body body = body_of(problem);
+  FractureModel model(body, problem, 0.5);
+  damage(model, body);
+  ASSERT_GT(model.record().broken.size(), 3u);
+  const Column u = random_column(body, 0.01 * body.h, 2), w = random_column(body, body.h, 3),
+               still(body.X.size(), 0.0);
+  Column f = still, plus = u, minus = u;
+  model.forces(u, still, f, Executor(1));
+  const double step = 1e-5;
+  double power = 0;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    plus[k] += step * w[k], minus[k] -= step * w[k];
+    power -= f[k] * w[k];
+  }
+  const double slope = (model.energies(plus, Executor(1)).internal -
+                        model.energies(minus, Executor(1)).internal) /
+                       (2 * step);
+  EXPECT_NEAR(slope, power, 1e-8 * std::abs(power));
+}
+
+TEST(FractureModel, AParticleLeftAloneCarriesNoStress) {
+  const scene::Problem problem = plate();
+  const Body body = body_of(problem);
+  FractureModel model(body, problem, 0.5);
+  damage(model, body);
+  std::vector<double> share(body.n);
+  model.intact_share(share);
+  ASSERT_EQ(share[lone], 0);
+  EXPECT_GT(body.m[lone], 0);
+  const Column u = random_column(body, 0.01 * body.h, 2), v = random_column(body, 1, 4);
+  Column f(body.X.size(), 0.0);
+  model.forces(u, v, f, Executor(1));
+  std::vector<Mat3> H(body.n);
+  model.gradients(u, H);
+  EXPECT_EQ(f[2 * lone], 0);
+  EXPECT_EQ(f[2 * lone + 1], 0);
+  EXPECT_EQ(H[lone], Mat3::Zero());
+  Vec3 sum = Vec3::Zero();
+  double scale = 0;
+  for (Index a = 0; a < body.n; ++a) {
+    ASSERT_TRUE(std::isfinite(f[2 * a]) && std::isfinite(f[2 * a + 1]));
+    sum += Vec3(f[2 * a], f[2 * a + 1], 0);
+    scale += std::abs(f[2 * a]);
+  }
+  EXPECT_LT(sum.norm(), 1e-12 * scale);  // viscous ones included
+}
+
+TEST(FractureModel, DampingTakesEnergyWhetherTheBodyGrowsOrShrinks) {
+  const scene::Problem problem = plate();
+  const Body body = body_of(problem);
+  FractureModel model(body, problem, 0.5);
+  for (const double rate : {1e3, -1e3}) {
+    Column v = body.X, f(body.X.size(), 0.0);
+    for (double& x : v) x *= rate;
+    const Column u(body.X.size(), 0.0);
+    model.advance(0, 0, u, v, f, Executor(1));
+    double power = 0;
+    for (std::size_t k = 0; k < v.size(); ++k) power += model.viscous_forces()[k] * v[k];
+    EXPECT_LT(power, 0) << rate;
+    EXPECT_EQ(power, power);
+  }
+}
+
+// pi = -beta l rho c_0 v.x/(x^2 + .01 l^2) (21) and f = -(23) with P - pi J F^-T, for one bond.
+TEST(FractureModel, DampingOfAStretchedBond) {
+  const scene::Problem problem = plate();
+  const Body body = body_of(problem);
+  FractureModel one(body, problem, 0.5), two(body, problem, 1.0);
+  const Column u = random_column(body, 0.01 * body.h, 2), v = random_column(body, 1, 4);
+  Column f(body.X.size(), 0.0);
+  one.advance(0, 0, u, v, f, Executor(1));
+  two.advance(0, 0, u, v, f, Executor(1));
+  const Network& network = one.network();
+  std::vector<Mat3> H(body.n);
+  one.gradients(u, H);
+  Column expected(body.X.size(), 0.0);
+  const double l = body.h, c0 = std::sqrt(problem.material.E / problem.material.rho0);
+  for (Index k = 0; k < static_cast<Index>(network.bonds()); ++k) {
+    const Index i = network.first(k), p = network.second(k);
+    const auto difference = [&](const Column& c) {
+      return Vec3(c[2 * p] - c[2 * i], c[2 * p + 1] - c[2 * i + 1], 0);
+    };
+    const Vec3 x = body.position(p) - body.position(i) + difference(u);
+    const double pi = -0.5 * l * problem.material.rho0 * c0 * difference(v).dot(x) /
+                      (x.squaredNorm() + 0.01 * l * l);
+    const double* z = network.zeta() + 4 * static_cast<std::size_t>(k);
+    const auto cofactor = [&](Index a, double z0, double z1) {
+      return Vec3((1 + H[a](1, 1)) * z0 - H[a](1, 0) * z1,
+                  -H[a](0, 1) * z0 + (1 + H[a](0, 0)) * z1, 0);
+    };
+    const Vec3 force = -pi * (cofactor(i, z[0], z[1]) - cofactor(p, z[2], z[3]));
+    for (int j = 0; j < 2; ++j)
+      expected[2 * i + j] += force[j], expected[2 * p + j] -= force[j];
+  }
+  double scale = 0;
+  for (const double e : expected) scale = std::max(scale, std::abs(e));
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_NEAR(one.viscous_forces()[k], expected[k], 1e-12 * scale);
+    EXPECT_NEAR(two.viscous_forces()[k], 2 * expected[k], 2e-12 * scale);
+  }
+}
+
+namespace {
+
+scene::Result run_plate(const std::vector<scene::Override>& more, double beta = 0.5) {
+  const scene::Problem problem = plate(more);
+  scene::RunRequest request;
+  request.h = 0.5e-3;
+  request.settings = {{"courant", "0.1"}, {"beta", std::to_string(beta)}};
+  scene::Result result;
+  scene::MethodRegistry::instance().find("cbm").run(problem, request, result);
+  return result;
+}
+
+}  // namespace
+
+TEST(FractureRun, TheEnergyBalanceClosesWhileItBreaks) {
+  for (const char* criterion : {"strain", "energy"}) {
+    const scene::Result result = run_plate({{"fracture.criterion", criterion}});
+    EXPECT_GT(result.quantities.at("broken_bonds"), 30) << criterion;
+    EXPECT_LT(result.quantities.at("energy_residual"), 5e-4) << criterion;
+    EXPECT_GT(result.quantities.at("crack_advance"), 5e-3) << criterion;
+  }
+}
+
+TEST(FractureRun, ATougherPlateBreaksLaterAndLess) {
+  const scene::Result weak = run_plate({}),
+                      tough = run_plate({{"fracture.energy_release_rate", "500 J/m^2"}});
+  ASSERT_TRUE(weak.quantities.contains("crack_arrival"));
+  ASSERT_TRUE(tough.quantities.contains("crack_arrival"));
+  EXPECT_LT(weak.quantities.at("crack_arrival"), tough.quantities.at("crack_arrival"));
+  EXPECT_LT(tough.quantities.at("dead_area"), weak.quantities.at("dead_area"));
+}
+
+TEST(FractureRun, OtherMethodsRefuse) {
+  const scene::Problem problem = plate();
+  for (const scene::Method* method : scene::MethodRegistry::instance().all()) {
+    if (method->info().name == "cbm") continue;
+    scene::RunRequest request;
+    request.h = 2e-3;
+    scene::Result result;
+    EXPECT_THROW(method->run(problem, request, result), InputError) << method->info().name;
+  }
+}
+
+}  // namespace concord::particle::cbm
