@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace concord::studies {
@@ -95,6 +96,17 @@ void add_error(const Study& study, const ErrorEntry& entry, const std::vector<Ro
     source["balance"] = balance_text(false);
 }
 
+/// The samples at and after `from` [s]; a sample less than 1e-9 of the record before counts.
+Record part_of(const Record& whole, double from) {
+  if (!whole.reason.empty() || whole.t.empty()) return whole;
+  const double slack = 1e-9 * (whole.t.back() - whole.t.front());
+  const auto first = std::lower_bound(whole.t.begin(), whole.t.end(), from - slack);
+  Record part;
+  part.t.assign(first, whole.t.end());
+  part.x.assign(whole.x.begin() + (first - whole.t.begin()), whole.x.end());
+  return part;
+}
+
 }  // namespace
 
 void add_signals(const Study& study, std::vector<Row>& rows, const fs::path& out) {
@@ -104,7 +116,8 @@ void add_signals(const Study& study, std::vector<Row>& rows, const fs::path& out
       json& target = row.summary["signals"][signal.name];
       target = json::object();
       target["column"] = signal.column;
-      const Record record = read_record(history_of(row, out), signal.column);
+      const Record whole = read_record(history_of(row, out), signal.column);
+      const Record record = signal.from ? part_of(whole, *signal.from) : whole;
       for (const std::string& name : signal.features) {
         const Feature feature =
             record.reason.empty()

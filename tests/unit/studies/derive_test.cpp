@@ -83,6 +83,21 @@ TEST_F(Derived, SignalsAreNumbersOfTheRow) {
   EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.period"), 1, 1e-4);
 }
 
+TEST_F(Derived, SignalsOfTheLastPartOfARecord) {
+  Signal late = tip();
+  late.features = {"initial", "largest_change", "maximum"};
+  late.from = 0.75;  // sin is -1 there: a sample, and the least
+  m_study.signals = {late};
+  derive();
+  const double amplitude = 1 + 1. / 16;
+  EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.initial"), -amplitude, 1e-4);
+  EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.largest_change"), 2 * amplitude, 1e-4);
+  m_study.signals[0].from = 2;  // after the end
+  derive();
+  EXPECT_NE(why_absent(m_rows[0], "signals.tip.initial").find("fewer than two"),
+            std::string::npos);
+}
+
 TEST_F(Derived, WhatIsNotFoundSaysWhy) {
   m_study.signals = {tip()};
   m_study.signals[0].selector.method = "delaunay";

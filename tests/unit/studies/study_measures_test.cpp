@@ -46,6 +46,8 @@ TEST_F(StudyFile, ReadsSignals) {
   const Study study = read(signal + "features = [\"first_peak\", \"period\"]\nlevel = 0.5\n");
   EXPECT_EQ(study.signals.at(0).features.size(), 2u);
   EXPECT_EQ(study.signals[0].level, 0.5);
+  EXPECT_FALSE(study.signals[0].from);
+  EXPECT_EQ(read(signal + "features = [\"initial\"]\nfrom = 5\n").signals.at(0).from, 5);
   expect_error(signal, 8, "features");
   expect_error(signal + "features = [\"first_peek\"]\n", 11, "features");
   expect_error(signal + "features = [\"period\"]\nprominence = 2\n", 12, "prominence");
