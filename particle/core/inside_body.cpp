@@ -99,6 +99,20 @@ class Crossings {
   std::vector<std::vector<Index>> m_facets;
 };
 
+/// Whether a simplex is so flat that gradients in it are those of round-off and of the method's
+/// error over its height: below a quarter of the flattest one of a lattice, in 3D the half of a
+/// pyramid over a face's triangle (h^3/6 and sqrt(3) h), in the plane the half square.
+bool is_flat(int dim, const Index* v, std::span<const Vec3> X) {
+  std::array<Vec3, 4> P, g;
+  double longest = 0;  // squared
+  for (int i = 0; i <= dim; ++i) {
+    P[i] = X[v[i]];
+    for (int j = 0; j < i; ++j) longest = std::max(longest, (P[i] - P[j]).squaredNorm());
+  }
+  const double lattice = dim == 3 ? 1 / (6 * std::pow(3, 1.5)) : 0.25;
+  return std::abs(volume_gradients(dim, P, g)) < 0.25 * lattice * std::pow(longest, 0.5 * dim);
+}
+
 Triangulation join(const scene::Mesh& mesh, const InsideParts& parts,
                    const Executor& executor) {
   Triangulation t;
@@ -110,12 +124,13 @@ Triangulation join(const scene::Mesh& mesh, const InsideParts& parts,
   t.on_boundary.assign(parts.X.size(), 0);
   for (const SurfacePiece& piece : parts.surface) t.on_boundary[piece.particle] = 1;
   const Crossings crossings(mesh, parts.surface, parts.X);
-  if (!crossings.possible()) return t;
+  const bool may_cross = crossings.possible();
   const std::size_t nv = mesh.dim + 1;
   std::size_t kept = 0;
   for (std::size_t s = 0; s < t.size(); ++s) {
     const Index* v = &t.simplices[s * nv];
-    if (crossings.cross(v, static_cast<int>(nv))) continue;
+    if (is_flat(mesh.dim, v, parts.X)) continue;
+    if (may_cross && crossings.cross(v, static_cast<int>(nv))) continue;
     std::copy_n(v, nv, &t.simplices[nv * kept++]);
   }
   t.simplices.resize(nv * kept);
