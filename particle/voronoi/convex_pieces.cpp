@@ -69,32 +69,38 @@ bool inside(const std::vector<Segment>& boundary, const Vec3& N, const Vec3& X) 
   return angle > std::numbers::pi;
 }
 
+/// What is left of a segment inside a piece, and the line of the whole of it.
+struct Crossing {
+  Segment s;
+  HalfSpace left;
+};
+
 struct Halving {
   const std::vector<Segment>& boundary;
   const Vec3& N;
   double tiny, size;
   std::vector<ConvexPiece> found;
 
-  void run(const ConvexPiece& piece, const std::vector<Segment>& crossing) {
+  void run(const ConvexPiece& piece, const std::vector<Crossing>& crossing) {
     if (piece.polygon.empty()) return;
     if (crossing.empty()) {
       keep_if_inside(piece);
       return;
     }
-    const HalfSpace left = left_of(crossing.front(), N);
+    const HalfSpace left = crossing.front().left;
     for (const HalfSpace& side : {left, left.opposite()}) {
       ConvexPiece half;
       clip(piece.polygon, side, half.polygon);
       half.edges = piece.edges;
       half.edges.push_back(side);
-      std::vector<Segment> rest;
-      for (const Segment& s : crossing) {
-        const double d0 = side.beyond(s[0]), d1 = side.beyond(s[1]);
+      std::vector<Crossing> rest;
+      for (const Crossing& c : crossing) {
+        const double d0 = side.beyond(c.s[0]), d1 = side.beyond(c.s[1]);
         if (std::min(d0, d1) > -tiny) continue;  // beyond it, or on it
-        Segment cut = s;
-        if (d0 > 0) cut[0] = s[0] + d0 / (d0 - d1) * (s[1] - s[0]);
-        if (d1 > 0) cut[1] = s[0] + d0 / (d0 - d1) * (s[1] - s[0]);
-        if ((cut[1] - cut[0]).norm() > tiny) rest.push_back(cut);
+        Crossing cut = c;
+        if (d0 > 0) cut.s[0] = c.s[0] + d0 / (d0 - d1) * (c.s[1] - c.s[0]);
+        if (d1 > 0) cut.s[1] = c.s[0] + d0 / (d0 - d1) * (c.s[1] - c.s[0]);
+        if ((cut.s[1] - cut.s[0]).norm() > tiny) rest.push_back(cut);
       }
       run(half, rest);
     }
@@ -126,8 +132,10 @@ std::vector<ConvexPiece> convex_pieces(const std::vector<Segment>& segments, con
   for (const Segment& s : boundary)
     for (const Vec3& X : s) radius = std::max(radius, (X - centre).norm());
   const Vec3 u = 2 * radius * N.unitOrthogonal(), v = N.cross(u);
+  std::vector<Crossing> crossing;
+  for (const Segment& s : boundary) crossing.push_back({s, left_of(s, N)});
   Halving halving{boundary, N, tiny, radius, {}};
-  halving.run({{centre - u - v, centre + u - v, centre + u + v, centre - u + v}, {}}, boundary);
+  halving.run({{centre - u - v, centre + u - v, centre + u + v, centre - u + v}, {}}, crossing);
   return std::move(halving.found);
 }
 

@@ -47,7 +47,7 @@ class CellMaker {
       if (!m_whole->cell(a, m_cell)) return false;
       collect();
     }
-    if (m_shares.empty()) return false;
+    if (!m_inside) return false;
     hand_over(batch);
     return true;
   }
@@ -59,7 +59,7 @@ class CellMaker {
     for (int i = 0; i < m_cell.p; ++i)
       radius = std::max(radius, Eigen::Map<const Vec3>(m_cell.pts + 3 * i).norm());
     radius *= 0.5;  // voro++ keeps corners at twice their distance
-    m_box_seen = false;
+    m_box_seen = m_inside = false;
     for (const std::vector<PlaneSide>& part : m_region.parts) {
       if (!cuts_of(part, radius)) continue;
       if (m_cuts.empty()) {
@@ -68,10 +68,8 @@ class CellMaker {
       }
       voro::voronoicell_neighbor& piece = m_region.convex() ? m_cell : m_piece;
       if (!m_region.convex()) m_piece = m_cell;
-      const bool left = std::all_of(m_cuts.begin(), m_cuts.end(), [&](const PlaneSide& p) {
-        return cut(piece, m_region.planes[p.plane].side(p.side), m_P, m_region.scale.spacing,
-                   face_id(p));
-      });
+      const bool left = std::all_of(m_cuts.begin(), m_cuts.end(),
+                                    [&](const PlaneSide& p) { return trim(piece, p); });
       if (left) add_faces(piece);
     }
     return !m_box_seen;
@@ -90,7 +88,23 @@ class CellMaker {
     return true;
   }
 
+  /// Cuts by a plane, unless it only touches: voro++ would give a face that lies in it (between
+  /// particles of a lattice) to the plane. False: nothing is left.
+  bool trim(voro::voronoicell_neighbor& piece, const PlaneSide& p) {
+    const HalfSpace half = m_region.planes[p.plane].side(p.side);
+    const double offset = -half.beyond(m_P), touch = voro::tolerance / m_region.scale.spacing;
+    bool inside = false, outside = false;
+    for (int i = 0; i < piece.p; ++i) {
+      const double d = 0.5 * half.N.dot(Eigen::Map<const Vec3>(piece.pts + 3 * i)) - offset;
+      inside = inside || d < -touch;
+      outside = outside || d > touch;
+    }
+    if (!inside) return false;
+    return !outside || cut(piece, half, m_P, m_region.scale.spacing, face_id(p));
+  }
+
   void add_faces(voro::voronoicell_neighbor& cell) {
+    m_inside = true;
     cell.neighbors(m_ids);
     cell.face_vertices(m_corners);
     std::size_t at = 0;
@@ -184,7 +198,7 @@ class CellMaker {
 
   Index m_a = 0;
   Vec3 m_P;
-  bool m_box_seen = false;
+  bool m_box_seen = false, m_inside = false;  // some of the cell is on the box, in the body
   voro::voronoicell_neighbor m_cell, m_piece;
   std::vector<PlaneSide> m_cuts;
   std::vector<int> m_ids, m_corners;
