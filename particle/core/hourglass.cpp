@@ -39,13 +39,13 @@ Roughness Hourglass::measure(std::span<const double> u, std::span<const Mat3> H)
   Roughness r;
   m_sum.assign(n, Vec3::Zero());
   for (Index a = 0; a < n; ++a) {
-    const Vec3 u_a = vector_at(u, m_body, a), X_a = m_body.position(a);
+    const Vec3 u_a = column_vector(u, m_body, a), X_a = m_body.position(a);
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = m_edges.begin[a]; k < m_edges.begin[a + 1]; ++k) {
       const Index b = m_edges.other[k];
       const double w = m_edges.weight[k];
       const Vec3 X_ab = m_body.position(b) - X_a;
-      const Vec3 l_ab = vector_at(u, m_body, b) - u_a - 0.5 * ((H[a] + H[b]) * X_ab);
+      const Vec3 l_ab = column_vector(u, m_body, b) - u_a - 0.5 * ((H[a] + H[b]) * X_ab);
       r.local += w * l_ab.squaredNorm();
       sum += w * l_ab;
       m_sum[b] -= w * l_ab;

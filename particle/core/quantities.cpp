@@ -132,19 +132,21 @@ Vec3 Quantities::vector_value(const Place& place, const State& state,
   Vec3 sum = Vec3::Zero();
   if (place.quantity->kind == scene::QuantityKind::point) {
     // Between particles: the first-order expansion of the nearest one.
-    sum = vector_at(state.u, body, place.nearest);
+    sum = column_vector(state.u, body, place.nearest);
     if (!place.offset.isZero(0)) sum += H[place.nearest] * place.offset;
     return sum;
   }
   for (const auto& [a, share] : place.areas)
-    sum += share / place.area *
-           (body.inside() ? at_face(body.surface[a], state, H) : vector_at(state.u, body, a));
+    sum +=
+        share / place.area *
+        (body.inside() ? at_face(body.surface[a], state, H) : column_vector(state.u, body, a));
   // The constraint force that keeps the group moving as prescribed: R = m a - f on prescribed
   // components.
   for (const PrescribedDof& dof : place.dofs) {
     const Index a = dof.particle;
-    sum[dof.component] += body.m[a] * vector_at(state.acceleration, body, a)[dof.component] -
-                          vector_at(state.unbalanced, body, a)[dof.component];
+    sum[dof.component] +=
+        body.m[a] * column_vector(state.acceleration, body, a)[dof.component] -
+        column_vector(state.unbalanced, body, a)[dof.component];
   }
   return sum;
 }
@@ -154,9 +156,9 @@ Vec3 Quantities::at_face(const SurfacePiece& piece, const State& state,
                          std::span<const Mat3> H) const {
   const Body& body = m_model.body();
   const Index a = piece.particle;
-  Vec3 u = vector_at(state.u, body, a) + H[a] * (piece.C - body.position(a));
+  Vec3 u = column_vector(state.u, body, a) + H[a] * (piece.C - body.position(a));
   for (int i = 0; i < body.dim; ++i) {
-    if (piece.condition[i] >= 0) u[i] = vector_at(state.u, body, piece.point)[i];
+    if (piece.condition[i] >= 0) u[i] = column_vector(state.u, body, piece.point)[i];
   }
   return u;
 }
@@ -182,7 +184,7 @@ std::vector<double> Quantities::field(const std::string& name, const State& stat
   const std::span<const double> column = name == "displacement" ? state.u
                                          : name == "velocity"   ? state.v
                                                                 : state.unbalanced;
-  for (Index a = 0; a < body.bulk; ++a) result[a] = vector_at(column, body, a).norm();
+  for (Index a = 0; a < body.bulk; ++a) result[a] = column_vector(column, body, a).norm();
   if (name != "unbalanced_force") return result;
   // Forces on prescribed components are reactions; where everything is prescribed, they count.
   std::vector<char> prescribed(body.bulk, 0);
@@ -201,7 +203,7 @@ std::vector<double> Quantities::displacement_error(const State& state) const {
   std::vector<double> result(body.bulk);
   for (Index a = 0; a < body.bulk; ++a) {
     const Vec3 exact = (*m_problem.exact_displacement)(body.position(a), state.t);
-    result[a] = (vector_at(state.u, body, a) - exact).norm();
+    result[a] = (column_vector(state.u, body, a) - exact).norm();
   }
   return result;
 }

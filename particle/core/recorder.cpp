@@ -56,8 +56,8 @@ void Recorder::add_motion(const State& state, Balance& b) const {
   if (state.v.empty()) return;
   const Body& body = m_model.body();
   for (Index a = 0; a < body.bulk; ++a) {
-    const Vec3 v = vector_at(state.v, body, a);
-    const Vec3 x = body.position(a) + vector_at(state.u, body, a), p = body.m[a] * v;
+    const Vec3 v = column_vector(state.v, body, a);
+    const Vec3 x = body.position(a) + column_vector(state.u, body, a), p = body.m[a] * v;
     const double speed = v.norm();
     b.kinetic += 0.5 * body.m[a] * speed * speed;
     b.linear += p;
@@ -139,8 +139,8 @@ void Recorder::frame(const State& state) {
   const Body& body = m_model.body();
   std::vector<Vec3> x(body.bulk), u(body.bulk), v(body.bulk);
   for (Index a = 0; a < body.bulk; ++a) {
-    u[a] = vector_at(state.u, body, a);
-    v[a] = vector_at(state.v, body, a);
+    u[a] = column_vector(state.u, body, a);
+    v[a] = column_vector(state.v, body, a);
     x[a] = body.position(a) + u[a];
   }
   const auto flat = [](const std::vector<Vec3>& values) {
@@ -204,8 +204,8 @@ scene::Samples Recorder::samples(const State& state) {
   const std::span<const Mat3> H = gradients(state);
   for (Index a = 0; a < body.bulk; ++a) {
     s.X.push_back(body.position(a));
-    s.u.push_back(vector_at(state.u, body, a));
-    if (!m_problem.is_static) s.v.push_back(vector_at(state.v, body, a));
+    s.u.push_back(column_vector(state.u, body, a));
+    if (!m_problem.is_static) s.v.push_back(column_vector(state.v, body, a));
     s.F.push_back(Mat3::Identity() + H[a]);
   }
   s.weight.assign(body.V.begin(), body.V.begin() + body.bulk);

@@ -21,7 +21,7 @@ struct State {
 };
 
 /// Vector of a particle in a column; zero for an empty one.
-inline Vec3 vector_at(std::span<const double> column, const Body& body, Index a) {
+inline Vec3 column_vector(std::span<const double> column, const Body& body, Index a) {
   Vec3 r = Vec3::Zero();
   if (column.empty()) return r;
   for (int i = 0; i < body.dim; ++i)

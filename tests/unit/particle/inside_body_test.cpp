@@ -225,7 +225,7 @@ TEST(InsideBody, EnergyOfAPulledBodyCloses) {
     const State state = leapfrog.state();
     Vec3 rate = Vec3::Zero(), reaction = Vec3::Zero();
     for (Index a = 0; a < body.bulk; ++a)
-      rate += body.m[a] * vector_at(state.acceleration, body, a);
+      rate += body.m[a] * column_vector(state.acceleration, body, a);
     const auto values = recorder.quantities(state);
     for (const auto& [name, value] : values) {
       if (name == "x0_x" || name == "x1_x") reaction[0] += value;
