@@ -36,7 +36,7 @@ async function opened(browser, options = {}) {
 const sticking = () => {
   const width = document.documentElement.clientWidth;
   return [...document.querySelectorAll('main *')]
-    .filter((e) => e.getBoundingClientRect().right > width + 1 && !e.closest('.scroll, svg, .unseen'))
+    .filter((e) => e.getBoundingClientRect().right > width + 1 && !e.closest('.scroll, svg, .unseen, .screen'))
     .map((e) => `${e.tagName}.${e.className}`);
 };
 
@@ -145,6 +145,49 @@ const checks = {
     await close();
   },
 
+  async 'lights up a curve that a plot names itself, in all plots of the study'(browser) {
+    const { page, close } = await opened(browser);
+    const label = page.locator('svg.chart .curve', { has: page.locator('text') }).first();
+    const name = await label.getAttribute('data-case');
+    await label.locator('text').first().hover();
+    const lit = await page.evaluate((k) => ({
+      faded: document.querySelectorAll('.picking .curve:not(.on)').length,
+      wrong: [...document.querySelectorAll('.picking .curve.on')].filter((c) => c.dataset.case !== k).length,
+    }), name);
+    assert.ok(lit.faded > 0);
+    assert.equal(lit.wrong, 0);
+    await close();
+  },
+
+  async 'plays an animation on a click alone, by slider and by keyboard, its panels together'(browser) {
+    const { page, close } = await opened(browser, { reducedMotion: 'reduce' });
+    const figure = page.locator('[data-film]').first();
+    const film = JSON.parse(await figure.getAttribute('data-film'));
+    const places = () => figure.locator('.screen img').evaluateAll((all) => all.map((i) => `${i.style.left} ${i.style.top}`));
+    const time = () => figure.locator('output').textContent();
+    const weight = await figure.locator('.screen img').evaluateAll((all) => all.reduce((sum, i) => sum + i.src.length * 0.75, 0));
+    assert.ok(weight < 1e6, `${weight} bytes`);
+    const last = await places();
+    assert.ok(last.length > 1 && new Set(last).size === 1);
+    assert.equal(await time(), film.times.at(-1));
+    await page.waitForTimeout(500);
+    assert.deepEqual(await places(), last, 'nothing moves by itself');
+    const slider = figure.locator('input');
+    await slider.focus();
+    await page.keyboard.press('Home');
+    assert.equal(await time(), film.times[0]);
+    assert.equal(await slider.getAttribute('aria-valuetext'), film.times[0]);
+    assert.notDeepEqual(await places(), last);
+    assert.equal(new Set(await places()).size, 1);
+    const button = figure.locator('.player button');
+    await button.click();
+    assert.match(await button.textContent(), /Pause/);
+    await page.waitForFunction((end) => document.querySelector('[data-film] output').textContent === end, film.times.at(-1));
+    assert.match(await button.textContent(), /Play/);
+    assert.deepEqual(await places(), last);
+    await close();
+  },
+
   async 'leads from a cell of a heat map to its evidence, whose command can be copied'(browser) {
     const { page, close } = await opened(browser, { permissions: ['clipboard-read', 'clipboard-write'] });
     const command = page.locator('.evidence .command').first();
@@ -177,7 +220,13 @@ const checks = {
     const { page, close } = await opened(browser, { javaScriptEnabled: false });
     assert.ok(await page.locator('#verdicts table tbody tr').count() > 0);
     assert.ok(await page.locator('svg.chart').first().isVisible());
-    assert.equal(await page.locator('th button').count(), 0);
+    assert.equal(await page.locator('th button, .player').count(), 0);
+    const shown = await page.locator('.screen').first().evaluate((screen) => {
+      const box = screen.getBoundingClientRect(), sheet = screen.querySelector('img').getBoundingClientRect();
+      const n = +screen.querySelector('img').dataset.count - 1, across = +screen.querySelector('img').dataset.across;
+      return [(box.left - sheet.left) / box.width - n % across, (box.top - sheet.top) / box.height - Math.floor(n / across)];
+    });
+    assert.ok(shown.every((off) => Math.abs(off) < 0.02), `the last frame of an animation stands still: off by ${shown}`);
     await close();
   },
 };

@@ -75,7 +75,8 @@ def row(scene, method, variant, n, seed, error, wall, **more):
 CUBE = (("delaunay", "xi 1, regular", 0.31, 1.86, 1.0, 1), ("delaunay", "xi 1, 25 %", 0.27, 2.02, 1.0, 5),
         ("delaunay", "xi 0, 25 %", 0.13, 1.28, 0.9, 5), ("tlsph", "support 1.5", 0.45, 1.72, 1.5, 3),
         ("tlsph", "support 2", 0.75, 1.66, 2.4, 3), ("fem", "Q1", 0.24, 2.0, 0.8, 1),
-        ("fem", "Q2", 0.19, 2.95, 2.1, 1))
+        ("fem", "Q2", 0.19, 2.95, 2.1, 1), ("fem", "P1", 0.5, 1.9, 0.7, 1), ("tlsph", "support 3", 0.9, 1.6, 4.4, 1),
+        ("delaunay", "xi 0.1, 25 %", 0.2, 1.9, 1.0, 1))  # more than a plot labels at its ends
 
 
 def cube(folder):
