@@ -1,6 +1,6 @@
 #include "particle/cbm/kernels.hpp"
 
-#include "particle/delaunay/kernels.hpp"
+#include "particle/core/window.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,13 +54,13 @@ CONCORD_CLONES Index stresses(const StressConstants& c, Index first, Index last,
   for (Index a = first; a < last; a += stress_width) {
     const int count = std::min<Index>(stress_width, last - a);
     double h[4][stress_width], p[4][stress_width], g[4][stress_width], w[stress_width];
-    delaunay::Tensor<2> P[stress_width], G[stress_width];
+    Tensor<2> P[stress_width], G[stress_width];
     for (int l = 0; l < stress_width; ++l) w[l] = inverse_omega[a + std::min(l, count - 1)];
     for (int l = 0; l < stress_width; l += 4) {
       const double* record[4];
       for (int i = 0; i < 4; ++i)
         record[i] = gradient + 4 * static_cast<std::size_t>(a + std::min(l + i, count - 1));
-      delaunay::tensors_to_lanes<2>(record, l, h);
+      tensors_to_lanes<2>(record, l, h);
     }
 #pragma omp simd
     for (int l = 0; l < stress_width; ++l) {
@@ -69,8 +69,8 @@ CONCORD_CLONES Index stresses(const StressConstants& c, Index first, Index last,
     }
     const unsigned bad = stress_of_lanes<2, Law>(c, a, count, h, p);
     for (int l = 0; l < stress_width; l += 4) {
-      delaunay::lanes_to_tensors<2>(p, l, P + l);
-      delaunay::lanes_to_tensors<2>(g, l, G + l);
+      lanes_to_tensors<2>(p, l, P + l);
+      lanes_to_tensors<2>(g, l, G + l);
     }
     for (int l = 0; l < count; ++l) {
       const auto i = static_cast<std::size_t>(a + l);

@@ -12,7 +12,7 @@ namespace concord::particle {
 /// lines.
 template <int Dim> inline constexpr std::size_t record_size = Dim == 3 ? 16 : 8;
 /// Where the vector is.
-template <int Dim> inline constexpr std::size_t vector_at = Dim* Lanes<Dim>::stride;
+template <int Dim> inline constexpr std::size_t vector_place = Dim* Lanes<Dim>::stride;
 
 /// Records of consecutive particles in a ring: particle a is at a modulo the ring's size, a
 /// power of two.
@@ -82,7 +82,7 @@ CONCORD_CLONES void open_records(Window<Dim> window, Index first, Index last,
   for (Index a = first; a < last; ++a) {
     double* record = window.at(a);
     for (int k = 0; k < Dim; ++k) store(record + k * Lanes<Dim>::stride, Vec<Dim>{});
-    store(record + vector_at<Dim>,
+    store(record + vector_place<Dim>,
           load<Vec<Dim>>(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride));
   }
 }
@@ -141,7 +141,7 @@ template <int Dim>
 CONCORD_CLONES void copy_vectors(Window<Dim> window, Index first, Index last, double* column) {
   for (Index a = first; a < last; ++a) {
     store(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride,
-          load<Vec<Dim>>(window.at(a) + vector_at<Dim>));
+          load<Vec<Dim>>(window.at(a) + vector_place<Dim>));
   }
 }
 

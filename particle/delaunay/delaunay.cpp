@@ -11,8 +11,8 @@ namespace concord::particle::delaunay {
 class DelaunayModel::Space {
  public:
   Space(const Bonds& bonds, const Reach& reach, int dim, bool contact, bool viscous)
-      : buffer(bonds, dim, contact), m_mask(reach.window() - 1) {
-    const std::size_t size = reach.window() * (dim == 3 ? record_size<3> : record_size<2>);
+      : buffer(bonds, dim, contact), m_mask(reach.window(2) - 1) {
+    const std::size_t size = reach.window(2) * (dim == 3 ? record_size<3> : record_size<2>);
     m_H.assign(size, 0.0);
     m_P = m_H;
     if (viscous) m_rate = m_H;
@@ -158,7 +158,7 @@ DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
                              const Parameters& parameters, const Executor& executor)
     : ForceModel(body, problem), m_contact(parameters.xi_n > 0 || parameters.xi_t > 0),
       m_factors{parameters.xi_n * problem.material.E, parameters.xi_t * problem.material.mu},
-      m_bonds(make_bonds(body, m_contact, executor)), m_reach(m_bonds) {
+      m_bonds(make_bonds(body, m_contact, executor)), m_reach(m_bonds.begin, m_bonds.other) {
   m_inverse_V.resize(body.n);
   for (Index a = 0; a < body.n; ++a) m_inverse_V[a] = 1 / body.V[a];
   if (parameters.c1 > 0 || parameters.c2 > 0) {

@@ -4,9 +4,9 @@
 
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
+#include "particle/core/reach.hpp"
 #include "particle/core/tangent.hpp"
 #include "particle/delaunay/kernels.hpp"
-#include "particle/delaunay/sweep.hpp"
 
 #include <memory>
 #include <optional>

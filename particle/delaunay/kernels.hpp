@@ -4,67 +4,12 @@
 // once, in the row of its lower-numbered particle a, and adds to both ends; what is added to
 // one particle comes in ascending order of its neighbours, whoever works on which rows.
 
-#include "particle/core/stress_kernel.hpp"
+#include "particle/core/window.hpp"
 #include "particle/delaunay/bonds.hpp"
 
 #include <cstring>
 
 namespace concord::particle::delaunay {
-
-/// Doubles in a record of a window: a tensor, column by column, and a vector; whole cache
-/// lines.
-template <int Dim> inline constexpr std::size_t record_size = Dim == 3 ? 16 : 8;
-/// Where the vector is.
-template <int Dim> inline constexpr std::size_t vector_at = Dim* Lanes<Dim>::stride;
-
-/// Records of consecutive particles in a ring: particle a is at a modulo the ring's size, a
-/// power of two.
-template <int Dim> struct Window {
-  double* records;
-  std::size_t mask;  ///< size - 1
-  CONCORD_INLINE double* at(Index a) const {
-    return records + (static_cast<std::size_t>(a) & mask) * record_size<Dim>;
-  }
-};
-
-/// Tensor of one particle in registers, column by column.
-template <int Dim> struct Tensor {
-  Vec<Dim> column[Dim];
-
-  static CONCORD_INLINE Tensor load(const double* p) {
-    Tensor t;
-    for (int k = 0; k < Dim; ++k)
-      t.column[k] = particle::load<Vec<Dim>>(p + k * Lanes<Dim>::stride);
-    return t;
-  }
-  CONCORD_INLINE void store(double* p) const {
-    for (int k = 0; k < Dim; ++k) particle::store(p + k * Lanes<Dim>::stride, column[k]);
-  }
-  /// this += d (x) B
-  CONCORD_INLINE void add_outer(Vec<Dim> d, const double* B) {
-    for (int k = 0; k < Dim; ++k) column[k] += d * broadcast(B[k], Vec<Dim>{});
-  }
-  /// this X, X in a register
-  CONCORD_INLINE Vec<Dim> times(Vec<Dim> X) const {
-    Vec<Dim> r = column[0] * lane<0>(X) + column[1] * lane<1>(X);
-    if constexpr (Dim == 3) r += column[2] * lane<2>(X);
-    return r;
-  }
-  /// this B
-  CONCORD_INLINE Vec<Dim> times(const double* B) const {
-    Vec<Dim> r = column[0] * broadcast(B[0], Vec<Dim>{});
-    for (int k = 1; k < Dim; ++k) r += column[k] * broadcast(B[k], Vec<Dim>{});
-    return r;
-  }
-};
-
-/// Adds d (x) B to the tensor of a record.
-template <int Dim>
-CONCORD_INLINE void scatter_outer(double* record, Vec<Dim> d, const double* B) {
-  Tensor<Dim> t = Tensor<Dim>::load(record);
-  t.add_outer(d, B);
-  t.store(record);
-}
 
 /// Row of corrections of the boundary particle that comes next in a sweep.
 struct SurfaceCursor {
@@ -77,27 +22,6 @@ struct SurfaceCursor {
             surface.particle.begin())) {}
 };
 
-/// Records of [first, last) get a zero tensor and the vectors of a column.
-template <int Dim>
-CONCORD_CLONES void open_records(Window<Dim> window, Index first, Index last,
-                                 const double* column) {
-  for (Index a = first; a < last; ++a) {
-    double* record = window.at(a);
-    for (int k = 0; k < Dim; ++k) store(record + k * Lanes<Dim>::stride, Vec<Dim>{});
-    store(record + vector_at<Dim>,
-          load<Vec<Dim>>(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride));
-  }
-}
-
-/// Records of [first, last) get a zero tensor and a zero vector.
-template <int Dim>
-CONCORD_CLONES void open_records(Window<Dim> window, Index first, Index last) {
-  for (Index a = first; a < last; ++a) {
-    double* record = window.at(a);
-    for (int k = 0; k <= Dim; ++k) store(record + k * Lanes<Dim>::stride, Vec<Dim>{});
-  }
-}
-
 /// Corrections to V_a H_a of a boundary particle: u_ab (x) (B_ab + B_ba)/2, and at b the same
 /// with the other sign.
 template <int Dim>
@@ -106,7 +30,7 @@ CONCORD_INLINE void gradient_correction(const SurfaceBonds& s, std::size_t row, 
   for (Index k = s.begin[row]; k < s.begin[row + 1]; ++k) {
     double* H_b = H.at(s.other[k]);
     const double* B = &s.B_symmetric[static_cast<std::size_t>(k) * Dim];
-    const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+    const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_place<Dim>) - u_a;
     H_a.add_outer(u_ab, B);
     scatter_outer<Dim>(H_b, -u_ab, B);
   }
@@ -124,12 +48,12 @@ CONCORD_CLONES void gradient_rows(const Bonds& bonds, Index first, Index last,
   const double* B_all = bonds.B.data();
   for (Index a = first; a < last; ++a) {
     double* record = H.at(a);
-    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_place<Dim>);
     Tensor<Dim> H_a = Tensor<Dim>::load(record);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* H_b = H.at(other[k]);
       const double* B = B_all + static_cast<std::size_t>(k) * Dim;
-      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_place<Dim>) - u_a;
       H_a.add_outer(u_ab, B);
       scatter_outer<Dim>(H_b, u_ab, B);
     }
@@ -180,12 +104,12 @@ CONCORD_INLINE void local_displacements(const Bonds& bonds, Index first, Index l
   for (Index a = first; a < last; ++a) {
     const double* record = H.at(a);
     const Tensor<Dim> H_a = Tensor<Dim>::load(record);
-    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_at<Dim>),
+    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_place<Dim>),
                    X_a = load<Vec<Dim>>(X + static_cast<std::size_t>(a) * S);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       const double* H_b = H.at(other[k]);
       const Vec<Dim> X_ab = load<Vec<Dim>>(X + static_cast<std::size_t>(other[k]) * S) - X_a;
-      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a;
+      const Vec<Dim> u_ab = load<Vec<Dim>>(H_b + vector_place<Dim>) - u_a;
       Tensor<Dim> sum = Tensor<Dim>::load(H_b);
       for (int i = 0; i < Dim; ++i) sum.column[i] += H_a.column[i];
       const Vec<Dim> local = u_ab - sum.times(X_ab) * half, x_ab = X_ab + u_ab;
@@ -231,7 +155,7 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, Index first, Index last, 
   for (Index a = first; a < last; ++a) {
     double* record = P.at(a);
     Tensor<Dim> Q_a = Tensor<Dim>::load(record);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* P_b = P.at(other[k]);
       const Vec<Dim> local = load<Vec<Dim>>(local_in), x_ab = load<Vec<Dim>>(x_in);
@@ -239,13 +163,13 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, Index first, Index last, 
       const Vec<Dim> q = local * broadcast(*K, Vec<Dim>{}) + x_ab * c;
       const Vec<Dim> p = q + (local - x_ab * broadcast(*s, Vec<Dim>{})) * c;
       f_a += p;
-      store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - p);
+      store(P_b + vector_place<Dim>, load<Vec<Dim>>(P_b + vector_place<Dim>) - p);
       Q_a.add_outer(q, X);
       scatter_outer<Dim>(P_b, q, X);
       local_in += S, x_in += S, X += S, ++K, ++share, ++s;
     }
     Q_a.store(record);
-    store(record + vector_at<Dim>, f_a);
+    store(record + vector_place<Dim>, f_a);
   }
 }
 
@@ -260,46 +184,6 @@ CONCORD_CLONES void contact_rows(const Bonds& bonds, Index first, Index last,
     local_displacements<Dim>(bonds, a, end, X, H, buffer);
     contact_scalars(bonds, bonds.begin[a], bonds.begin[end] - bonds.begin[a], factors, buffer);
     contact_forces<Dim>(bonds, a, end, P, buffer);
-  }
-}
-
-/// Tensor of a record, the rest zero.
-template <int Dim> Mat3 tensor_of(const double* record) {
-  Mat3 t = Mat3::Zero();
-  for (int j = 0; j < Dim; ++j) {
-    for (int i = 0; i < Dim; ++i) t(i, j) = record[j * Lanes<Dim>::stride + i];
-  }
-  return t;
-}
-
-/// Tensors of four records into lanes l to l + 3 of h[Dim j + i].
-template <int Dim>
-CONCORD_INLINE void tensors_to_lanes(const double* const (&record)[4], int l,
-                                     double (&h)[Dim * Dim][stress_width]) {
-  for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {  // in the plane a register holds a tensor
-    v4d t[4];
-    for (int i = 0; i < 4; ++i) t[i] = load<v4d>(record[i] + 4 * k);
-    transpose(t[0], t[1], t[2], t[3]);
-    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
-      std::memcpy(&h[(Dim == 3 ? 3 * k : 0) + i][l], &t[i], sizeof(v4d));
-  }
-}
-
-/// The way back.
-template <int Dim>
-CONCORD_INLINE void lanes_to_tensors(const double (&p)[Dim * Dim][stress_width], int l,
-                                     Tensor<Dim>* tensor) {
-  for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {
-    v4d t[4] = {};
-    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
-      std::memcpy(&t[i], &p[(Dim == 3 ? 3 * k : 0) + i][l], sizeof(v4d));
-    transpose(t[0], t[1], t[2], t[3]);
-    for (int i = 0; i < 4; ++i) {
-      if constexpr (Dim == 3)
-        tensor[i].column[k] = t[i];
-      else
-        std::memcpy(&tensor[i], &t[i], sizeof(v4d));
-    }
   }
 }
 
@@ -328,7 +212,7 @@ CONCORD_CLONES Index stress_rows(const StressConstants& c, Index first, Index la
         const Vec<Dim> w = broadcast(-0.5 * inverse_V[a + l], Vec<Dim>{});
         for (int k = 0; k < Dim; ++k) P_a.column[k] += twice.column[k] * w;
       } else {
-        store(record + vector_at<Dim>, Vec<Dim>{});
+        store(record + vector_place<Dim>, Vec<Dim>{});
       }
       P_a.store(record);
     }
@@ -347,7 +231,7 @@ CONCORD_INLINE void force_correction(const SurfaceBonds& s, std::size_t row,
     double* P_b = P.at(s.other[k]);
     const double* B = &s.B_symmetric[static_cast<std::size_t>(k) * Dim];
     f_a -= Tensor<Dim>::load(P_b).times(B);
-    store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - P_a.times(B));
+    store(P_b + vector_place<Dim>, load<Vec<Dim>>(P_b + vector_place<Dim>) - P_a.times(B));
   }
 }
 
@@ -362,25 +246,16 @@ CONCORD_CLONES void force_rows(const Bonds& bonds, Index first, Index last, Wind
   for (Index a = first; a < last; ++a) {
     double* record = P.at(a);
     const Tensor<Dim> P_a = Tensor<Dim>::load(record);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* P_b = P.at(other[k]);
       const double* B = B_all + static_cast<std::size_t>(k) * Dim;
       f_a += Tensor<Dim>::load(P_b).times(B);
-      store(P_b + vector_at<Dim>, load<Vec<Dim>>(P_b + vector_at<Dim>) - P_a.times(B));
+      store(P_b + vector_place<Dim>, load<Vec<Dim>>(P_b + vector_place<Dim>) - P_a.times(B));
     }
     if (a == surface.bonds.particle[surface.row])
       force_correction<Dim>(surface.bonds, surface.row++, P_a, f_a, P);
-    store(record + vector_at<Dim>, f_a);
-  }
-}
-
-/// The vectors of records [first, last) into a column.
-template <int Dim>
-CONCORD_CLONES void copy_vectors(Window<Dim> window, Index first, Index last, double* column) {
-  for (Index a = first; a < last; ++a) {
-    store(column + static_cast<std::size_t>(a) * Lanes<Dim>::stride,
-          load<Vec<Dim>>(window.at(a) + vector_at<Dim>));
+    store(record + vector_place<Dim>, f_a);
   }
 }
 

@@ -1,8 +1,8 @@
 // Gradient vectors against Eq. (27) of the Delaunay paper and their identities (29)-(33).
 
 #include "particle/core/body.hpp"
+#include "particle/core/reach.hpp"
 #include "particle/delaunay/bonds.hpp"
-#include "particle/delaunay/sweep.hpp"
 #include "scene/reader.hpp"
 
 #include <Eigen/Geometry>
@@ -168,7 +168,7 @@ TEST_P(GradientVectors, OwnVectorOfBoundaryParticlesClosesTheSum) {  // (29)
 
 TEST_P(GradientVectors, ReachBoundsTheRows) {
   const Bonds rows = make_bonds(body, false, Executor(1));
-  const Reach reach(rows);
+  const Reach reach(rows.begin, rows.other);
   std::mt19937_64 generator(3);
   for (int trial = 0; trial < 50; ++trial) {
     const auto cut = static_cast<Index>(generator() % (body.n + 1));
