@@ -37,8 +37,26 @@ inline std::vector<Variant> variants() {
       {"delaunay_xi_isotropic_half", "delaunay", {{"xi_n", "0.5"}, {"xi_t", "1.3"}}});
   list.push_back({"tlsph_psi0", "tlsph", {{"psi", "0"}}});
   list.push_back({"tlsph_potential", "tlsph", {{"penalty", "potential"}}});
+  list.push_back({"voronoi_xi0", "voronoi", {{"xi_n", "0"}, {"xi_t", "0"}}});
+  list.push_back({"voronoi_conserving", "voronoi", {{"force", "conserving"}}});
+  list.push_back({"voronoi_static", "voronoi", {{"force", "static"}}});
   list.push_back({"tlsph_wendland", "tlsph", {{"kernel", "wendland-c2"}, {"support", "2.5"}}});
   return list;
+}
+
+/// Whether the method says that it, or this setting of it, has not the property.
+inline bool declares(const Variant& variant, const std::string& property) {
+  const auto& cannot = scene::MethodRegistry::instance().find(variant.method).info().cannot;
+  if (cannot.count(property) > 0) return true;
+  for (const auto& [key, value] : variant.settings) {
+    if (cannot.count(property + " (" + key + "=" + value + ")") > 0) return true;
+  }
+  return false;
+}
+
+/// Whether the method refuses bodies with curved faces, such as the tensile bar.
+inline bool refuses_curved_faces(const Variant& variant) {
+  return declares(variant, "curved faces");
 }
 
 /// Scene, body and model together, in the order in which they depend on each other.
@@ -52,8 +70,7 @@ struct Bench {
         const std::vector<scene::Override>& set = {}, double perturb = 0.25,
         std::uint64_t seed = 5)
       : problem(scene::read_problem(scene, set)),
-        body(particles(variant, problem, resolution, perturb, seed)),
-        model(make(variant)) {}
+        body(particles(variant, problem, resolution, perturb, seed)), model(make(variant)) {}
 
   static const ParticleMethod& method_of(const Variant& variant) {
     return dynamic_cast<const ParticleMethod&>(

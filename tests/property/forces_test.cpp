@@ -31,27 +31,40 @@ TEST_P(EveryMethod, AffineFieldHasExactGradients) {
   Mat3 H;
   H << 0.3, 0.1, -0.2, 0.05, -0.2, 0.15, 0.1, -0.1, 0.25;
   const Column u = b.column([&](Index a) { return Vec3(H * b.body.position(a)); });
-  std::vector<Mat3> computed(b.body.n);
+  std::vector<Mat3> computed(b.body.bulk);
   b.model->gradients(u, computed);
   for (const Mat3& Ha : computed) EXPECT_LT((Ha - H).norm(), 2e-13);
+}
+
+/// Whether free faces have no say in the force on a particle under constant stress: inside the
+/// body; where particles lie inside anyway, two spacings from its faces, which act through
+/// the neighbours of the outermost.
+bool is_interior(const Body& body, Index a) {
+  if (!body.inside()) return !body.triangulation.on_boundary[a];
+  return std::all_of(body.surface.begin(), body.surface.end(), [&](const SurfacePiece& piece) {
+    return piece.N.dot(piece.C - body.position(a)) > 2 * body.h;
+  });
 }
 
 /// Interior particles are in equilibrium under constant stress where the gradient vectors
 /// satisfy the integration constraint (31). Methods that cannot say so, and must then really
 /// fail.
 TEST_P(EveryMethod, ConstantStressLeavesInteriorInEquilibrium) {
-  Bench b(GetParam(), "spinning_block", 5);
+  Bench b(GetParam(), "spinning_block", 7);
   Mat3 H;
   H << 0.02, 0.01, 0, 0.01, -0.01, 0.02, 0, 0.02, 0.03;
   const Column u = b.column([&](Index a) { return Vec3(H * b.body.position(a)); });
   const Column f = b.force(u);
   double interior = 0;
-  for (Index a = 0; a < b.body.n; ++a) {
-    if (!b.body.triangulation.on_boundary[a]) interior = std::max(interior, b.at(f, a).norm());
+  int count = 0;
+  for (Index a = 0; a < b.body.bulk; ++a) {
+    if (!is_interior(b.body, a)) continue;
+    interior = std::max(interior, b.at(f, a).norm());
+    ++count;
   }
+  EXPECT_GE(count, 27);
   const double scale = b.problem.material.E * H.norm() * b.body.h * b.body.h;
-  const auto& cannot = scene::MethodRegistry::instance().find(GetParam().method).info().cannot;
-  if (cannot.count("equilibrium patch test"))
+  if (declares(GetParam(), "equilibrium patch test"))
     EXPECT_GT(interior, 1e-6 * scale) << "declared failure did not happen";
   else
     EXPECT_LT(interior, 1e-12 * scale);
@@ -69,18 +82,18 @@ TEST_P(EveryMethod, ForcesHaveNoResultantAndNoMoment) {
     sum += b.at(f, a).norm();
   }
   EXPECT_LT(resultant.norm(), 1e-14 * sum);
-  EXPECT_LT(moment.norm(), 1e-14 * sum * b.problem.reference_length);
+  const double scale = sum * b.problem.reference_length;
+  if (declares(GetParam(), "angular momentum"))
+    EXPECT_GT(moment.norm(), 1e-6 * scale) << "declared failure did not happen";
+  else
+    EXPECT_LT(moment.norm(), 1e-14 * scale);
 }
 
 TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
   Bench b(GetParam(), "spinning_block", 4);
   if (!b.model->has_potential()) {
     // The declared failure: the stabilisation force does work that no energy accounts for.
-    EXPECT_EQ(scene::MethodRegistry::instance()
-                  .find(GetParam().method)
-                  .info()
-                  .cannot.count("potential"),
-              1u);
+    EXPECT_TRUE(declares(GetParam(), "potential"));
     return;
   }
   const Column u = b.random_displacement();
@@ -170,6 +183,7 @@ TEST_P(EveryMethod, PartsHaveTheBitsOfTheWhole) {
 
 TEST_P(EveryMethod, NumberingOfTheMeshDoesNotMatter) {
   Bench b(GetParam(), "spinning_block", 5);
+  if (b.body.inside()) return;  // particles are no nodes: voronoi_test.cpp renumbers them
   scene::Mesh mesh = b.body.mesh;
   std::vector<Index> place(mesh.nodes.size());
   std::iota(place.begin(), place.end(), 0);

@@ -25,6 +25,13 @@ scene::Result pull(const Variant& variant, const Overrides& set,
   return result;
 }
 
+/// The bar has fillets; asserts that a method that declares so refuses it.
+bool refused(const Variant& variant) {
+  if (!refuses_curved_faces(variant)) return false;
+  EXPECT_THROW(pull(variant, {}), InputError);
+  return true;
+}
+
 double force(const scene::Result& r) {
   return std::hypot(r.quantities.at("reaction_x"), r.quantities.at("reaction_y"));
 }
@@ -41,6 +48,7 @@ Overrides turned(const std::string& d, const std::string& angle) {
 }
 
 TEST_P(EveryMethod, ExplicitAndImplicitPlasticRunsAgree) {
+  if (refused(GetParam())) return;
   const scene::Result implicit = pull(GetParam(), {});
   const scene::Result dynamic = pull(GetParam(), {{"parameters.tau", "0.8"}},
                                      {{"solver", "explicit"}, {"duration", "1e-3"}});
@@ -54,6 +62,7 @@ TEST_P(EveryMethod, ExplicitAndImplicitPlasticRunsAgree) {
 }
 
 TEST_P(EveryMethod, UnloadingIsElasticAndReloadingComesBack) {
+  if (refused(GetParam())) return;
   // To 1 mm, back by 10 um (elastic: the bar yields at about 80 um), and to 1 mm again.
   const std::string path = "t<0.5 ? 1e-3*t/0.5 : (t<0.75 ? 1e-3 - 1e-5*(t-0.5)/0.25 : "
                            "1e-3 - 1e-5*(1-t)/0.25)";
@@ -75,6 +84,7 @@ TEST_P(EveryMethod, UnloadingIsElasticAndReloadingComesBack) {
 }
 
 TEST_P(EveryMethod, StepSizesFromTinyToHuge) {
+  if (refused(GetParam())) return;
   const scene::Result fine = pull(GetParam(), {{"load_steps", "100"}});
   const scene::Result one = pull(GetParam(), {{"load_steps", "1"}});
   EXPECT_NEAR(force(one), force(fine), 3e-3 * force(fine));
@@ -85,6 +95,7 @@ TEST_P(EveryMethod, StepSizesFromTinyToHuge) {
 }
 
 TEST_P(EveryMethod, PerfectPlasticityRuns) {
+  if (refused(GetParam())) return;
   const Overrides perfect{{"material.saturation_stress", "450 MPa"},
                           {"material.hardening_modulus", "0 Pa"},
                           {"parameters.U", "0.2 mm"}};
@@ -96,6 +107,7 @@ TEST_P(EveryMethod, PerfectPlasticityRuns) {
 }
 
 TEST_P(EveryMethod, BarTurnedUnderLoad) {
+  if (refused(GetParam())) return;
   const std::string pulled = "1e-3*min(2*t, 1)";
   const scene::Result still = pull(GetParam(), turned(pulled, "0*t"));
   const scene::Result turning = pull(GetParam(), turned(pulled, "pi*max(t - 0.5, 0)"));

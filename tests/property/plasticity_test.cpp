@@ -26,9 +26,11 @@ struct Case {
   std::vector<scene::Override> set;
 };
 
-/// A block in 3D and the bar in plane strain.
-std::vector<Case> cases() {
-  return {{"spinning_block", 4, soft_plastic}, {"tensile_bar", 14, {}}};
+/// A block in 3D, and a body in plane strain with the methods that can have it.
+std::vector<Case> cases(const Variant& variant) {
+  return {{"spinning_block", 4, soft_plastic},
+          refuses_curved_faces(variant) ? Case{"cooks_membrane", 6, soft_plastic}
+                                        : Case{"tensile_bar", 14, {}}};
 }
 
 /// A body of the method with a history: loaded far beyond yield, and taken.
@@ -49,7 +51,7 @@ struct Loaded {
 };
 
 TEST_P(EveryMethod, PlasticFlowHappensAndStays) {
-  for (const Case& c : cases()) {
+  for (const Case& c : cases(GetParam())) {
     Loaded l(GetParam(), c);
     const Energies e = l.bench.model->energies(l.u, l.bench.executor);
     double volume = 0;
@@ -64,7 +66,7 @@ TEST_P(EveryMethod, PlasticFlowHappensAndStays) {
 }
 
 TEST_P(EveryMethod, PlasticForceIsTheGradientOfTheIncrementalEnergy) {
-  for (const Case& c : cases()) {
+  for (const Case& c : cases(GetParam())) {
     Loaded l(GetParam(), c);
     Bench& b = l.bench;
     if (!b.model->has_potential()) continue;  // declared, see forces_test.cpp
@@ -87,7 +89,7 @@ TEST_P(EveryMethod, PlasticForceIsTheGradientOfTheIncrementalEnergy) {
 }
 
 TEST_P(EveryMethod, PlasticTangentIsTheDerivativeOfTheForce) {
-  for (const Case& c : cases()) {
+  for (const Case& c : cases(GetParam())) {
     Loaded l(GetParam(), c);
     Bench& b = l.bench;
     const Column u = l.further(), d = random_direction(b, 17);
@@ -100,7 +102,7 @@ TEST_P(EveryMethod, PlasticTangentIsTheDerivativeOfTheForce) {
 }
 
 TEST_P(EveryMethod, EvaluationsLeaveTheHistoryAlone) {
-  for (const Case& c : cases()) {
+  for (const Case& c : cases(GetParam())) {
     Loaded l(GetParam(), c);
     const Column first = l.bench.force(l.u);
     (void)l.bench.force(l.further(-0.5));
@@ -114,8 +116,12 @@ TEST_P(EveryMethod, EvaluationsLeaveTheHistoryAlone) {
 
 /// What flows now may unload in the next step: the stable step is that of the elastic response.
 TEST_P(EveryMethod, PlasticFlowDoesNotLengthenTheStableStep) {
-  const auto omega = [&](const std::vector<scene::Override>& set) {
-    Bench b(GetParam(), "tensile_bar", 14, set);
+  using Overrides = std::vector<scene::Override>;
+  const Case plane = cases(GetParam())[1];
+  const auto omega = [&](const Overrides& set) {
+    Overrides all = plane.set;
+    all.insert(all.end(), set.begin(), set.end());
+    Bench b(GetParam(), plane.scene, plane.resolution, all);
     const Column u =
         b.column([&](Index a) { return Vec3(0, 0.02 * b.body.position(a)[1], 0); });
     (void)b.force(u);
@@ -143,7 +149,7 @@ TEST_P(EveryMethod, PlasticityDoesNotSeeThreads) {
 }
 
 TEST_P(EveryMethod, PlasticHistoryTurnsWithTheBody) {
-  Loaded l(GetParam(), cases()[0]);
+  Loaded l(GetParam(), cases(GetParam())[0]);
   Bench& b = l.bench;
   const Mat3 R = Eigen::AngleAxisd(2.3, Vec3(0.3, -1, 0.7).normalized()).toRotationMatrix();
   const Column u = l.further();

@@ -44,7 +44,7 @@ void compare(const std::string& scene, double resolution,
   constexpr int steps = 12;
   Bench whole(variant, scene, resolution, set);
   const Outcome expected = run(whole, false, 1, steps, ramp_time);
-  EXPECT_EQ(expected.particle_steps, static_cast<double>(steps) * whole.body.n);
+  EXPECT_EQ(expected.particle_steps, static_cast<double>(steps) * whole.body.bulk);
   EXPECT_GT(norm(expected.u), 0);
   for (const int threads : {1, 3}) {
     Bench b(variant, scene, resolution, set);
@@ -70,6 +70,13 @@ TEST_P(EveryMethod, WaveFromAStruckEndFindsTheRestAsIfItHadBeenComputed) {
 
 /// Prescribed motion, history of the material, plane strain.
 TEST_P(EveryMethod, WaveFromAPulledEndFindsTheRestAsIfItHadBeenComputed) {
+  if (refuses_curved_faces(GetParam())) {
+    EXPECT_THROW(Bench(GetParam(), "tensile_bar", 14), InputError);
+    compare("cooks_membrane", 20,
+            {{"boundary.0.kind", "displacement"}, {"boundary.0.value", "[\"-1e-3*t\", \"0\"]"}},
+            1e-2, GetParam());
+    return;
+  }
   compare("tensile_bar", 80, {}, 1e-4, GetParam());
 }
 

@@ -255,8 +255,13 @@ TEST(InsideBody, OrderFollowsTheLayersOfCells) {
   }
 }
 
-/// Error of the field over points up to the corners of the cube, of exact u and H.
-double field_error(int N, double perturb, const auto& u, const auto& H, double* gradient) {
+/// Errors of the field made from exact u and H, over points up to the corners of the cube.
+struct FieldError {
+  double largest = 0, mean_square = 0, gradient = 0;
+  double rms() const { return std::sqrt(mean_square); }
+};
+
+FieldError field_error(int N, double perturb, const auto& u, const auto& H) {
   Body body = cubes(cube(), N, perturb);
   std::vector<Vec3> X, values;
   std::vector<Mat3> gradients;
@@ -266,17 +271,19 @@ double field_error(int N, double perturb, const auto& u, const auto& H, double* 
     gradients.push_back(H(X.back()));
   }
   const ParticleField field(body, X, values, gradients);
-  constexpr int M = 20;
+  constexpr int M = 21;  // points a side
   std::vector<Vec3> at;
-  for (int p = 0; p < (M + 1) * (M + 1) * (M + 1); ++p)
-    at.push_back(Vec3(p % (M + 1), p / (M + 1) % (M + 1), p / ((M + 1) * (M + 1))) / M);
+  for (int p = 0; p < M * M * M; ++p)
+    at.push_back(Vec3(p % M, p / M % M, p / (M * M)) / (M - 1));
   std::vector<Vec3> found(at.size());
   std::vector<Mat3> slope(at.size());
   field.evaluate(at, found, slope);
-  double error = 0;
+  FieldError error;
   for (std::size_t p = 0; p < at.size(); ++p) {
-    error = std::max(error, (found[p] - u(at[p])).norm());
-    if (gradient) *gradient = std::max(*gradient, (slope[p] - H(at[p])).norm());
+    const double d = (found[p] - u(at[p])).norm();
+    error.largest = std::max(error.largest, d);
+    error.mean_square += d * d / static_cast<double>(at.size());
+    error.gradient = std::max(error.gradient, (slope[p] - H(at[p])).norm());
   }
   return error;
 }
@@ -291,9 +298,9 @@ TEST(InsideField, IsExactForQuadraticFieldsUpToTheCorners) {
     return h;
   };
   for (const double perturb : {0.0, 0.25}) {
-    double gradient = 0;
-    EXPECT_LT(field_error(4, perturb, u, H, &gradient), 1e-12);
-    EXPECT_LT(gradient, 1e-9);  // flat simplices under the faces enlarge round-off
+    const FieldError error = field_error(4, perturb, u, H);
+    EXPECT_LT(error.largest, 1e-13);
+    EXPECT_LT(error.gradient, 1e-12);
   }
 }
 
@@ -309,10 +316,11 @@ TEST(InsideField, IsOfThirdOrderForSmoothFields) {
     return h;
   };
   for (const double perturb : {0.0, 0.25}) {
-    const double coarse = field_error(4, perturb, u, H, nullptr),
-                 fine = field_error(8, perturb, u, H, nullptr);
-    EXPECT_GT(std::log2(coarse / fine), 2.5) << perturb;
-    EXPECT_LT(fine, 5e-3);
+    const FieldError coarse = field_error(6, perturb, u, H),
+                     fine = field_error(12, perturb, u, H);
+    EXPECT_GT(std::log2(coarse.rms() / fine.rms()), 2.6) << perturb;
+    EXPECT_GT(std::log2(coarse.gradient / fine.gradient), 1) << perturb;
+    EXPECT_LT(fine.rms(), 5e-4);
   }
 }
 
