@@ -3,9 +3,9 @@
 #include "particle/voronoi/tessellation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -40,22 +40,27 @@ std::string place_of(std::span<const Vec3> X, Index a) {
   return fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m", a, X[a][0], X[a][1], X[a][2]);
 }
 
-/// Cells overlap only where particles share a place; else the walls are at fault.
+/// Throws where two particles share a place.
+void require_distinct(std::span<const Vec3> X, const SourcePosition& where) {
+  std::vector<Index> order(X.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](Index a) { return std::tuple(X[a][0], X[a][1], X[a][2], a); };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (X[order[i - 1]] == X[order[i]])
+      throw InputError(
+          where, "particles",
+          fmt::format("{} and particle {} in one place", place_of(X, order[i - 1]), order[i]),
+          "one particle a place");
+}
+
+/// Cells overlap where particles share a place; else the walls are at fault.
 void require_filled(const Cells& cells, const Region& region, std::span<const Vec3> X,
                     const SourcePosition& where) {
   const double volume = std::accumulate(cells.V.begin(), cells.V.end(), 0.0);
   const double body = region.volume * cells.thickness;
   if (std::abs(volume - body) <= 1e-9 * body) return;
-  std::vector<Index> order(X.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](Index a) { return std::array{X[a][0], X[a][1], X[a][2]}; };
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i - 1]) == key(order[i]))
-      throw InputError(
-          where, "particles",
-          fmt::format("{} and particle {} in one place", place_of(X, order[i - 1]), order[i]),
-          "one particle a place");
+  require_distinct(X, where);
   throw InputError(
       where, "geometry",
       fmt::format("Voronoi cells of volume {:.10g} m^3 in a body of {:.10g} m^3", volume, body),
@@ -63,6 +68,12 @@ void require_filled(const Cells& cells, const Region& region, std::span<const Ve
 }
 
 }  // namespace
+
+void no_cell(std::span<const Vec3> X, Index a, const SourcePosition& where) {
+  require_distinct(X, where);
+  throw InputError(where, "particles", place_of(X, a) + " outside the body",
+                   "particles inside the body");
+}
 
 std::vector<Index> hidden_walls(const Cells& cells, std::span<const Vec3> X, double least) {
   std::vector<Index> hidden;

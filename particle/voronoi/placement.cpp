@@ -116,8 +116,9 @@ Index before_both(const Cells& cells, std::span<const Vec3> X, Index a, Index wa
   return best;
 }
 
-/// Lloyd's iteration knows nothing of re-entrant edges. Where a particle's cell reaches round
-/// one, it steps back and the particle before the edge steps forward until that has the edge.
+/// Neither Lloyd's iteration nor lattices of unequal spacings know of re-entrant edges. Where a
+/// particle's cell reaches round one, it steps back and the particle before the edge steps
+/// forward until that has the edge.
 void clear_edges(std::vector<Vec3>& X, const scene::Mesh& mesh, const Distances& walls,
                  double h, const Executor& executor, const CellOptions& options) {
   for (int round = 0; round < edge_rounds; ++round) {
@@ -197,8 +198,8 @@ std::vector<Vec3> place_particles(const scene::Problem& problem, double h, doubl
                        fmt::format("no particle inside the body at a spacing of {:.4g} m", h),
                        "a spacing below the body's thickness");
     make_centroidal(X, mesh, h, executor, options);
-    if (!region.convex()) clear_edges(X, mesh, Distances(region.walls), h, executor, options);
   }
+  if (!region.convex()) clear_edges(X, mesh, Distances(region.walls), h, executor, options);
   if (perturb_by == 0) return X;
   const std::vector<Vec3> unperturbed = X;
   perturb(X, Distances(region.walls), mesh.dim, perturb_by * h, seed);

@@ -9,8 +9,6 @@
 #include <limits>
 #include <optional>
 
-#include <fmt/format.h>
-
 namespace concord::particle::voronoi {
 namespace {
 
@@ -63,11 +61,13 @@ class CellMaker {
     for (const std::vector<PlaneSide>& part : m_region.parts) {
       if (!cuts_of(part, radius)) continue;
       if (m_cuts.empty()) {
+        m_touched.clear();
         add_faces(m_cell);
         break;  // all of it is in this part
       }
       voro::voronoicell_neighbor& piece = m_region.convex() ? m_cell : m_piece;
       if (!m_region.convex()) m_piece = m_cell;
+      m_touched.clear();
       const bool left = std::all_of(m_cuts.begin(), m_cuts.end(),
                                     [&](const PlaneSide& p) { return trim(piece, p); });
       if (left) add_faces(piece);
@@ -93,14 +93,17 @@ class CellMaker {
   bool trim(voro::voronoicell_neighbor& piece, const PlaneSide& p) {
     const HalfSpace half = m_region.planes[p.plane].side(p.side);
     const double offset = -half.beyond(m_P), touch = voro::tolerance / m_region.scale.spacing;
-    bool inside = false, outside = false;
+    bool inside = false, outside = false, touches = false;
     for (int i = 0; i < piece.p; ++i) {
       const double d = 0.5 * half.N.dot(Eigen::Map<const Vec3>(piece.pts + 3 * i)) - offset;
       inside = inside || d < -touch;
       outside = outside || d > touch;
+      touches = touches || std::abs(d) <= touch;
     }
     if (!inside) return false;
-    return !outside || cut(piece, half, m_P, m_region.scale.spacing, face_id(p));
+    if (outside) return cut(piece, half, m_P, m_region.scale.spacing, face_id(p));
+    if (touches && !m_region.planes[p.plane].walls[p.side].empty()) m_touched.push_back(p);
+    return true;
   }
 
   void add_faces(voro::voronoicell_neighbor& cell) {
@@ -111,37 +114,68 @@ class CellMaker {
     for (const int id : m_ids) {
       const int count = m_corners[at];
       if (id == local_box) m_box_seen = true;
-      if (id > m_a || id < local_box) {
+      if (id > m_a || id < local_box || !m_touched.empty()) {
         m_face.clear();
         for (int k = 1; k <= count; ++k)
           m_face.push_back(0.5 * Eigen::Map<const Vec3>(cell.pts + 3 * m_corners[at + k]));
-        if (id >= 0)
-          add_share(id, -1, m_face,
-                    (m_region.scale.factor * (m_X[id] - m_X[m_a])).normalized());
-        else
-          add_wall_face(plane_side(id));
+        add_face(id);
       }
       at += static_cast<std::size_t>(count) + 1;
     }
   }
 
-  /// Divides what lies on a plane among its walls; what lies on none is a cut between parts.
-  void add_wall_face(const PlaneSide& p) {
-    const Plane& plane = m_region.planes[p.plane];
-    if (plane.whole() >= 0) {
-      add_share(-1, plane.whole(), m_face, plane.half.N);
+  void add_face(int id) {
+    if (id < local_box) {
+      const PlaneSide p = plane_side(id);
+      const Index whole = m_region.planes[p.plane].whole();
+      if (whole >= 0)
+        add_share(-1, whole, m_face, m_region.planes[p.plane].half.N);
+      else
+        divide(p, -1);
       return;
     }
+    if (id < 0) return;
+    for (const PlaneSide& p : m_touched) {
+      const HalfSpace half = m_region.planes[p.plane].half;
+      const double offset = -half.beyond(m_P), touch = voro::tolerance / m_region.scale.spacing;
+      if (std::all_of(m_face.begin(), m_face.end(), [&](const Vec3& X) {
+            return std::abs(half.N.dot(X) - offset) <= touch;
+          })) {
+        divide(p, id);
+        return;
+      }
+    }
+    if (id > m_a) add_share(id, -1, m_face, normal_to(id));
+  }
+
+  Vec3 normal_to(Index b) const {
+    return (m_region.scale.factor * (m_X[b] - m_X[m_a])).normalized();
+  }
+
+  /// Divides what lies on a plane among its walls. What lies on none is a face to particle b
+  /// where the plane happens to bisect a and b, else a cut between parts of the body.
+  void divide(const PlaneSide& p, Index b) {
+    const Plane& plane = m_region.planes[p.plane];
+    std::vector<Polygon> left = {m_face}, outside;
+    Polygon beyond, inside;
     for (const Index w : plane.walls[p.side])
       for (const ConvexPiece& piece : m_region.pieces[w]) {
-        m_clipped = m_face;
-        for (const HalfSpace& edge : piece.edges) {
-          std::swap(m_clipped, m_before);
-          clip(m_before, {edge.N, -edge.beyond(m_P)}, m_clipped);
-          if (m_clipped.empty()) break;
+        outside.clear();
+        for (Polygon& rest : left) {
+          for (const HalfSpace& edge : piece.edges) {
+            const HalfSpace half{edge.N, -edge.beyond(m_P)};
+            clip(rest, half.opposite(), beyond);
+            if (!beyond.empty()) outside.push_back(beyond);
+            clip(rest, half, inside);
+            std::swap(rest, inside);
+            if (rest.empty()) break;
+          }
+          if (!rest.empty()) add_share(-1, w, rest, plane.half.N);
         }
-        if (!m_clipped.empty()) add_share(-1, w, m_clipped, plane.half.N);
+        std::swap(left, outside);
       }
+    for (const Polygon& rest : left)
+      if (b > m_a) add_share(b, -1, rest, normal_to(b));
   }
 
   void add_share(Index b, Index wall, const Polygon& polygon, const Vec3& N) {
@@ -200,9 +234,9 @@ class CellMaker {
   Vec3 m_P;
   bool m_box_seen = false, m_inside = false;  // some of the cell is on the box, in the body
   voro::voronoicell_neighbor m_cell, m_piece;
-  std::vector<PlaneSide> m_cuts;
+  std::vector<PlaneSide> m_cuts, m_touched;  // planes that cut the piece; that it only touches
   std::vector<int> m_ids, m_corners;
-  Polygon m_face, m_clipped, m_before;
+  Polygon m_face;
   std::vector<Share> m_shares;
 };
 
@@ -254,13 +288,7 @@ Cells tessellate(const Region& region, int dim, double thickness, std::span<cons
   cells.walls = region.walls;
   std::size_t faces = 0;
   for (const Batch& batch : batches) {
-    if (batch.lost >= 0) {
-      const Vec3& P = X[batch.lost];
-      throw InputError(options.where, "particles",
-                       fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) m outside the body",
-                                   batch.lost, P[0], P[1], P[2]),
-                       "particles inside the body");
-    }
+    if (batch.lost >= 0) no_cell(X, batch.lost, options.where);
     faces += batch.interior.size() + batch.walls.size();
   }
   cells.faces.reserve(faces);

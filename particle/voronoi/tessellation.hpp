@@ -15,6 +15,9 @@ Cells tessellate(const Region& region, int dim, double thickness, std::span<cons
 /// body's extent, so an edge between cospherical particles may open by some of that.
 double smallest_area(const Region& region, int dim, double thickness);
 
+/// Throws the InputError for a particle without a cell: outside, or where another one is.
+[[noreturn]] void no_cell(std::span<const Vec3> X, Index a, const SourcePosition& where);
+
 /// make_cells without its last check: also where particles do not see all of their cells.
 Cells all_cells(const scene::Mesh& mesh, double thickness, std::span<const Vec3> X,
                 const Executor& executor, const CellOptions& options);

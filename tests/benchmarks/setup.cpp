@@ -3,6 +3,8 @@
 
 #include "particle/core/boundary.hpp"
 #include "particle/delaunay/delaunay.hpp"
+#include "particle/voronoi/cells.hpp"
+#include "particle/voronoi/placement.hpp"
 #include "scene/reader.hpp"
 
 #include <benchmark/benchmark.h>
@@ -89,6 +91,20 @@ void setup_model(benchmark::State& state) {
   count(state, static_cast<std::size_t>(body.n));
 }
 
+/// Voronoi cells of particles inside the body, one fewer an edge.
+void setup_voronoi_cells(benchmark::State& state) {
+  const scene::MeshRequest request = request_of(state);
+  scene::MeshRequest coarse = request;
+  coarse.h = 0.5;
+  const scene::Mesh surface = scene::make_mesh(cube(), coarse);
+  const auto X = voronoi::place_particles(cube(), request.h, perturbation(state), 1);
+  for (auto _ : state) {
+    const voronoi::Cells cells = voronoi::make_cells(surface, 3, 1, X);
+    benchmark::DoNotOptimize(cells.faces.data());
+  }
+  count(state, X.size());
+}
+
 /// Particles an edge; displacement in percent of the spacing (0: a lattice, whose cospherical
 /// points are the slow case of a triangulation).
 void sizes(benchmark::internal::Benchmark* benchmark) {
@@ -103,5 +119,6 @@ BENCHMARK(setup_triangulation)->Apply(sizes);
 BENCHMARK(setup_body)->Apply(sizes);
 BENCHMARK(setup_gradient_vectors)->Apply(sizes);
 BENCHMARK(setup_model)->Apply(sizes);
+BENCHMARK(setup_voronoi_cells)->Apply(sizes);
 
 }  // namespace
