@@ -76,15 +76,15 @@ class PathFinder {
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> m_queue;
 };
 
-/// The chord from the beginning of a path to where it has gone `length`; zero if it ends
-/// before.
-Vec3 chord(const PathFinder& finder, std::span<const Index> path, double length) {
+/// The chord from the beginning of a path to where it has gone `longest`, or to its end; zero
+/// if that is before half of it.
+Vec3 chord(const PathFinder& finder, std::span<const Index> path, double longest) {
   double gone = 0;
-  for (std::size_t k = 1; k < path.size(); ++k) {
+  std::size_t k = 1;
+  for (; k < path.size() && gone < longest; ++k)
     gone += (finder.place(path[k]) - finder.place(path[k - 1])).norm();
-    if (gone >= length * (1 - 1e-9)) return finder.place(path[k]) - finder.place(path[0]);
-  }
-  return Vec3::Zero();
+  if (gone < 0.5 * longest) return Vec3::Zero();
+  return finder.place(path[k - 1]) - finder.place(path[0]);
 }
 
 /// What goes on from a node of the paths that are there.
@@ -184,8 +184,8 @@ CrackPaths crack_paths(const CrackBody& body, const CrackStart& start,
     if (!(length >= shortest)) return result;
     const std::vector<Index> branch = finder.path_to(end);
     result.branch_lengths.push_back(length);
-    const Vec3 own = chord(finder, branch, shortest),
-               other = chord(finder, rest_from(paths, branch.front()), shortest);
+    const Vec3 own = chord(finder, branch, 4 * shortest),
+               other = chord(finder, rest_from(paths, branch.front()), 4 * shortest);
     if (own.norm() > 0 && other.norm() > 0)
       result.branch_angles.push_back(
           std::acos(std::clamp(own.dot(other) / (own.norm() * other.norm()), -1.0, 1.0)));

@@ -69,7 +69,8 @@ struct CrackPaths {
 /// Peels longest paths: the longest of the shortest paths from the dead triangle nearest the
 /// pre-crack's tip, through centroids of dead triangles that share a vertex; then, as long as
 /// it is at least `shortest`, the longest of the shortest paths from all that has been peeled.
-/// Angles are between the chords from the fork to what lies `shortest` along either path.
+/// Angles are between the chords from the fork to what lies four times `shortest` along either
+/// path, or to its end, where both have at least half of that.
 CrackPaths crack_paths(const CrackBody& body, const CrackStart& start,
                        std::span<const DeadSimplex> dead, double shortest);
 

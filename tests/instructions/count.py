@@ -29,6 +29,7 @@ FEATURES = (
     ("output", "plain", "count_without_output", "recorded"),
     ("regions at rest", "pulse", "count_without_rest", "pulse_resting"),
     ("rest, all moves", "plain", "count_without_rest", "pulse_resting"),
+    ("fracture", "plain", "count_without_fracture", "breakable"),
     ("penalty of SPH", "sph_plain", "count_without_penalty", "sph_penalty"),
     ("viscosity of SPH", "sph_penalty", "count_without_viscosity", "sph_viscous"),
 )

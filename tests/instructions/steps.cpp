@@ -4,6 +4,7 @@
 #include "tests/instructions/bodies.hpp"
 #include "tests/instructions/counted.hpp"
 
+#include "particle/cbm/fracture.hpp"
 #include "particle/core/leapfrog.hpp"
 #include "particle/delaunay/delaunay.hpp"
 #include "scene/reader.hpp"
@@ -101,6 +102,19 @@ void pulse_steps(const std::string& name, bool rest) {
               [&](LeapfrogOptions& o) { o.rest_regions = rest; });
 }
 
+/// A plane plate whose bonds could break, and do not: the plate swells slowly.
+void breakable_steps(const std::string& name) {
+  scene::Problem problem = free_body(Dimension::plane_stress, "pmma_plate");
+  problem.fracture->cracks.clear();
+  problem.fracture->arrival.clear();
+  problem.fracture->energy_release_rate = 1e9;
+  problem.initial_velocity.emplace();
+  problem.initial_velocity->component[0] = scene::Expression("X", {});
+  const Body body = unit_body(problem);
+  cbm::FractureModel model(body, problem, 0.5);
+  count_steps(name, problem, body, model, Executor(1), {});
+}
+
 void sph_steps(const std::string& name, double psi, PenaltyForm penalty, double alpha) {
   const scene::Problem problem = rubber();
   const Body body = unit_body(problem);
@@ -143,6 +157,7 @@ const Case cases[] = {
      [](Name n) { delaunay_steps(n, steel(Dimension::three_d, slow), 0, 0); }},
     {"plastic_flowing_3d",
      [](Name n) { delaunay_steps(n, steel(Dimension::three_d, fast), 0, 0); }},
+    {"breakable", [](Name n) { breakable_steps(n); }},
     {"sph_plain", [](Name n) { sph_steps(n, 0, PenaltyForm::ganzenmueller, 0); }},
     {"sph_penalty", [](Name n) { sph_steps(n, 0.07, PenaltyForm::ganzenmueller, 0); }},
     {"sph_potential", [](Name n) { sph_steps(n, 0.07, PenaltyForm::potential, 0); }},
