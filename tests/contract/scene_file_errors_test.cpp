@@ -148,8 +148,8 @@ TEST(SceneFile, Fracture) {
                      {"\"strian\"", "fracture.criterion", "strian", "did you mean strain?"});
   expect_scene_error(plane_scene(head + G + "length = \"-1 mm\"\n"),
                      {"\"-1 mm\"", "fracture.length", "-1 mm", "> 0"});
-  expect_scene_error(plane_scene(head + G + "crack = 3\n"),
-                     {"3\n", "fracture.crack", "3", "[[crack]]"});
+  expect_scene_error(plane_scene(head + G + "crack = 7\n"),
+                     {"7\n", "fracture.crack", "7", "[[crack]]"});
   expect_scene_error(crack(point, point), {"", "fracture.crack.0.to", "", "another point"});
   expect_scene_error(crack(point, "[\"X\", \"1\"]"),
                      {"[\"X\", \"1\"]", "fracture.crack.0.to", "", "parameters alone"});

@@ -139,6 +139,14 @@ value = ["0", "0"]
 [exact]
 displacement = ["U*X", "0"]
 velocity = ["0", "0"]
+[fracture]
+energy_release_rate = "1 J/m^2"
+criterion = "energy"
+length = "1 mm"
+arrival = "x0"
+[[fracture.crack]]
+from = ["0", "0"]
+to = ["U", "0"]
 [[quantity]]
 name = "p"
 kind = "point"
