@@ -186,7 +186,8 @@ template <int dim> void Observer<dim>::frame(const State& state) {
     }
     x[n] += u[n];
   }
-  const std::vector<std::string> names = m_fields.frame_fields();
+  std::vector<std::string> names = m_fields.frame_fields();
+  names.emplace_back("pressure");  // every material has it, and particle methods write it too
   std::vector<std::vector<double>> scalars;
   for (const std::string& name : names) scalars.push_back(m_fields.at_nodes(name, state.u));
   std::vector<scene::FrameField> fields{{"displacement", 3, flat(u)}};

@@ -15,7 +15,8 @@ OFF = 0.01  # of an instant: a frame that is farther from it tells its own time
 
 def caption(job):
     """The caption's factual half: method, spacing, time, exaggeration, how large the field is."""
-    case, parts = job["case"], [job["case"].label]
+    case = job["case"]
+    parts = [case.label.removesuffix(", " + case.scene.replace("_", " ")) if job.get("one_scene") else case.label]
     if job["h"]:
         parts.append(f"h = {exact(job['h'])} m" if job["h"] >= 0.01 else f"h = {exact(job['h'] * 1e3, 3)} mm")
     if job["film"]:
@@ -105,6 +106,8 @@ def note(jobs):
         ends_ = "The scale ends at the 1st and 99th percentile. " if jobs[0]["picture"].get("range") == "robust" else ""
         out.append(f"{ends_}Values beyond an end of the scale, where it has a tip, have that end’s colour: "
                    f"{share(max(j['clipped'] for j in jobs))} of the points{' of a picture' if count > 1 else ''}.")
+    if jobs[0]["view"]["front"] and not jobs[0]["view"]["flat"]:
+        out.append("Seen along z: x to the right, y upwards.")
     if any(j["plate"] for j in jobs):
         out.append("The grey plate is where the body is held.")
     if in_rows(jobs[0]["whole"]):

@@ -5,7 +5,7 @@ from . import frames
 from .loading import number
 
 WIDE = 360  # pixels of a frame, at most
-BUDGET = 900_000  # bytes of an animation, all of its panels together
+BUDGET = 500_000  # bytes of an animation, all of its panels together
 COLUMNS = 6  # of pictures on a sheet
 
 
@@ -37,7 +37,7 @@ def together(facts):
     def span(key):
         return [min(f[key][0] for f in facts), max(f[key][1] for f in facts)]
     return {**facts[-1], "seen": ends("seen"), "seen_flat": ends("seen_flat"), "range": span("range"), "robust": span("robust"),
-            "flat": all(f["flat"] for f in facts), "plane": all(f["plane"] for f in facts), "nan": max(f["nan"] for f in facts)}
+            "flat": all(f["flat"] for f in facts), "thin": facts[0]["thin"], "plane": all(f["plane"] for f in facts), "nan": max(f["nan"] for f in facts)}
 
 
 def columns(count):

@@ -5,6 +5,8 @@ from pathlib import Path
 from .loading import InputError, number, read_json
 
 EYE = (0.62, -1.0, 0.55)  # direction to the eye in three dimensions
+THIN = 0.3  # of its other extents: a body that is thinner along z is seen along z
+HELD = 0.9  # of a face's points: fewer do not hold it
 PLAIN = "none"  # instead of a field: the shape alone
 TAILS = (1, 99)  # percentiles at the ends of a robust scale
 POINT_CELL = 1  # VTK_VERTEX: the frame of a particle method
@@ -95,7 +97,7 @@ def facts(path, color, scale, crop=None):
     if data is None:
         return {"missing": f"the frame has no point field '{color}'; it has: "
                            + (", ".join(sorted(frame["fields"])) or "none")}
-    positions, _ = deformed(frame, scale)
+    positions, reference = deformed(frame, scale)
     there = _inside(positions, crop)
     if not there.any():
         return {"missing": "nothing of the body lies inside the crop" if crop else "no point has a place"}
@@ -114,7 +116,8 @@ def facts(path, color, scale, crop=None):
         return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
     particles = is_particles(frame)
     return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
-            "range": [float(good.min()), float(good.max())], "robust": np.percentile(good, TAILS).tolist(), "flat": flat, "points": len(positions),
+            "range": [float(good.min()), float(good.max())], "robust": np.percentile(good, TAILS).tolist(), "flat": flat,
+            "thin": _thin(positions if reference is None else reference), "points": len(positions),
             "particles": particles, "plate": plate, "middle": middle, "nan": int(len(data) - np.isfinite(data).sum()),
             "plane": flat and (particles or plane_cells.supported(frame))}
 
@@ -138,14 +141,22 @@ def _inside(positions, crop):
     return there
 
 
+def _thin(reference):
+    """True for a body that is seen best along z: a strip or a plate in the plane of x and y."""
+    import numpy as np
+    size = np.ptp(reference[np.isfinite(reference).all(axis=1)], axis=0)
+    return bool(size[2] < THIN * size[:2].min())
+
+
 def held(frame):
-    """Corners of a plate behind the face of a body at which points were held while others moved; None when
-    there is no such face. Corner 4 i + 2 j + k: ends i, j, k along x, y, z."""
+    """Corners of a plate behind the face of a body at which most points were held while others moved; None when
+    there is no such face, or when the plate would hide the body. Corner 4 i + 2 j + k: ends i, j, k along x, y, z."""
     import numpy as np
     moved = frame["fields"].get("displacement")
     if moved is None or not np.abs(moved).max() > 0:
         return None
-    points = (frame["points"] - moved)[(np.abs(moved) <= 1e-12 * np.abs(moved).max()).all(axis=1)]
+    reference = frame["points"] - moved
+    points = reference[(np.abs(moved) <= 1e-12 * np.abs(moved).max()).all(axis=1)]
     if len(points) < 3:
         return None
     low, high = points.min(axis=0), points.max(axis=0)
@@ -154,7 +165,11 @@ def held(frame):
     if len(thin) != 1:
         return None
     across = thin[0]
-    whole = (frame["points"] - moved).mean(axis=0)
+    whole = reference.mean(axis=0)
+    face = np.abs(reference[:, across] - low[across]) < 1e-6 * size
+    towards_eye = (low - whole)[across] * EYE[across] > 0
+    if towards_eye or len(points) < HELD * face.sum():
+        return None
     grown = np.where(np.arange(3) == across, 0.0, 0.22 * size)
     low, high = low - grown, high + grown
     if whole[across] > low[across]:
@@ -165,10 +180,10 @@ def held(frame):
     return [[float(ends[i, 0]), float(ends[j, 1]), float(ends[k, 2])] for i in (0, 1) for j in (0, 1) for k in (0, 1)]
 
 
-def view_axes(flat):
+def view_axes(front):
     """Rows: the unit vectors to the right, upwards, and towards the eye, of every picture."""
     import numpy as np
-    if flat:
+    if front:
         return np.eye(3)
     away = np.array(EYE) / np.linalg.norm(EYE)
     right = np.cross((0.0, 0.0, 1.0), away)

@@ -82,7 +82,7 @@ def _group(group):
             "title": variant_text((whole or {}).get("caption") or ""),
             "common": [*common, captions.extent(drawn[0], len(drawn))] if whole else [],
             "panel_width": captions.panel_width(max(drawn, key=lambda j: j["height"] / j["width"]), -(-len(jobs) // (columns or 1))),
-            "triad": [] if drawn[0]["view"]["flat"] else captions.triad(), "note": captions.note(drawn)}
+            "triad": [] if drawn[0]["view"]["front"] else captions.triad(), "note": captions.note(drawn)}
     for k in range(0, len(jobs), columns) if captions.in_rows(whole) else ():
         there = [job for job in jobs[k:k + columns] if "missing" not in job]
         time = whole["times"][k // columns]

@@ -150,6 +150,7 @@ def _share_scales(jobs):
         flat = all(j["flat"] for j in alike)
         job["plane"] = flat and all(j["plane"] for j in alike)
         job["view"] = _view(job, alike, flat)
+        job["one_scene"] = job["whole"] is not None and len({j["scene"] for j in alike}) == 1
         wanted = job["picture"].get("range")
         job["budget"] = films.BUDGET // len([j for j in alike if j["film"]] or [job])
         same = [j for j in alike if j["color"] == job["color"] and j["picture"].get("range") == wanted]
@@ -170,9 +171,10 @@ def _share_scales(jobs):
 def _view(job, alike, flat):
     """What is seen: the extent of all bodies, or the crop. The rows of a figure with instants have one width and each the
     height that it needs. Where the bodies travel, each row has its own middle."""
+    front = flat or all(j["thin"] for j in alike)
     room = max((0.6 if j["cells"] else 0.5) * (j["h"] or 0) if j["particles"] else 0.0 for j in alike)
     def extent(jobs):
-        seen = [j["seen_flat" if flat else "seen"] for j in jobs]
+        seen = [j["seen_flat" if front else "seen"] for j in jobs]
         return ([min(s[0][k] for s in seen) - room for k in range(3)],
                 [max(s[1][k] for s in seen) + room for k in range(3)])
     low, high = extent(alike)
@@ -189,7 +191,7 @@ def _view(job, alike, flat):
     a, b = ends[job["picture"].get("instant")]
     if high[0] - low[0] > TALL * (b[1] - a[1]):  # a drawing has at least this shape: narrower, its scale would differ
         low[1], high[1] = a[1], b[1]
-    view = {"flat": flat, "low": low, "high": high}
+    view = {"flat": flat, "front": front, "low": low, "high": high}
     for k, along in enumerate("xy"):
         if flat and (job["crop"] or {}).get(along):
             view["low"][k], view["high"][k] = map(float, job["crop"][along])

@@ -88,12 +88,23 @@ def plot_specs(study, cases):
                               "known: " + ", ".join(sorted(KINDS))))
             continue
         spec = make(study, cases, plot)
+        if not isinstance(spec, str):
+            _without_scene(spec, cases)
         if not isinstance(spec, str) and (spec.get("broken") or any(any(c.get("broken") or []) for c in spec["curves"])):
             spec["note"] = " ".join(filter(None, (spec.get("note"), f"{balance.SIGN} {balance.WORDS}.")))
         if not isinstance(spec, str):
             spec |= {f"{along}label": plot[f"{along}_label"] for along in "xy" if plot.get(f"{along}_label")}
         out.append((plot, spec))
     return out
+
+
+def _without_scene(spec, cases):
+    """Takes the scene out of the labels of curves that are all of one."""
+    lines = [c for c in spec["curves"] if not c.get("points") and not c.get("reference")]
+    ends = {f", {case.scene.replace('_', ' ')}" for case in cases if case.scene}
+    end = next((e for e in ends if lines and all(c["label"].endswith(e) for c in lines)), None)
+    for curve in lines if end else ():
+        curve["label"] = curve["label"].removesuffix(end)
 
 
 def labelled(spec):

@@ -33,7 +33,7 @@ def lines(points, lines, job):
     view = job["view"]
     reach = max(h - l for l, h in zip(view["low"], view["high"]))
     drawing = vtkPolyData()
-    drawing.SetPoints(vtk_points(points + 0.002 * reach * frames.view_axes(view["flat"])[2]))
+    drawing.SetPoints(vtk_points(points + 0.002 * reach * frames.view_axes(view["front"])[2]))
     drawing.SetLines(vtk_cells(lines))
     mapper = vtkPolyDataMapper()
     mapper.SetInputData(drawing)

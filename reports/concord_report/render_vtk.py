@@ -212,7 +212,7 @@ def _size(view, across):
 def _view(renderer, view, size):
     """Parallel projection onto the shared extent: pictures of one scene are to one scale."""
     low, high = np.array(view["low"]), np.array(view["high"])
-    right, up, away = frames.view_axes(view["flat"])
+    right, up, away = frames.view_axes(view["front"])
     middle = (low + high) / 2
     centre = middle @ np.array([right, up, away])
     half = (high - low) / 2

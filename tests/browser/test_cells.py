@@ -14,7 +14,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent.parent / "reports")]
 import fixture  # noqa: E402  (needs the paths above)
 import fixture_voronoi  # noqa: E402
 import numpy as np  # noqa: E402
-from concord_report import cache, captions, cases, films, loading, page, pictures, render, voronoi_cells  # noqa: E402
+from concord_report import cache, captions, cases, films, frames, loading, page, pictures, render, voronoi_cells  # noqa: E402
 from concord_report.loading import InputError  # noqa: E402
 from test_figures import drawing, row, spec_of, study  # noqa: E402
 
@@ -180,10 +180,26 @@ class Pictures(unittest.TestCase):
         self.assertEqual(group["pictures"][0]["sheet"], {"count": 3, "across": 3, "down": 1, "left": -200, "top": 0})
         self.assertIn("3 frames", group["common"])
 
+    def test_a_plate_never_hides_the_body_and_needs_a_face_that_is_held(self):
+        points, _ = fixture.lattice(2, (2, 1, 1))
+        for axis, end, wanted in ((0, 0, True), (1, 0, False), (2, 1, False), (1, 1, True)):
+            u = 0.1 * abs(points - end * points.max(axis=0))[:, [axis]] * np.ones(3)
+            frame = {"points": points + u, "fields": {"displacement": u}}
+            self.assertEqual(frames.held(frame) is not None, wanted, (axis, end))
+            loose = np.where(points.sum(axis=1, keepdims=True) > 1.4, u + 1, u)
+            self.assertIsNone(frames.held({"points": points + loose, "fields": {"displacement": loose}}))
+
+    def test_thin_bodies_are_seen_from_the_front(self):
+        self.assertTrue(frames._thin(fixture.lattice(10, (1, 0.5, 0.1))[0]))
+        self.assertFalse(frames._thin(fixture.lattice(4, (6, 1, 1))[0]))
+        seen = {"h": 0.1, "particles": False, "cells": None, "crop": None, "thin": True, "picture": {},
+                "seen": [[0, 0, 0], [9, 9, 9]], "seen_flat": [[0, 0, 0], [1, 0.5, 0.1]]}
+        self.assertEqual(pictures._view(seen, [seen], False)["high"], [1, 0.5, 0.1])
+
     def test_rows_of_instants_are_as_high_as_they_need(self):
         rows = {}
         for k, t in enumerate((0.0, 1.0)):
-            job = {"h": 0.1, "particles": True, "cells": None, "crop": None, "picture": {"instant": k}}
+            job = {"h": 0.1, "particles": True, "cells": None, "crop": None, "thin": False, "picture": {"instant": k}}
             job["seen"] = [[0, -t, 0], [2, 0.2, 1]]
             rows[k] = job
         views = [pictures._view(rows[k], list(rows.values()), False) for k in (0, 1)]
@@ -240,6 +256,13 @@ class Lines(unittest.TestCase):
         self.assertIn("Someone 1981", svg)
         plain = drawing({**spec, "curves": spec["curves"][:-1]})
         self.assertEqual(svg.count('data-case="-1001"'), plain.count('data-case="-1001"') + 3)  # marks, their sample, label
+
+    def test_labels_tell_the_scene_only_where_there_are_several(self):
+        rows = [*self.rows, {**self.rows[0], "scene": "other_scene"}]
+        both = spec_of(rows, {"kind": "history", "quantity": "path_m"}, self.folder)
+        one = spec_of(rows, {"kind": "history", "quantity": "path_m", "scene": "s"}, self.folder)
+        self.assertIn("Voronoi kept, other scene", [c["label"] for c in both["curves"]])
+        self.assertEqual([c["label"] for c in one["curves"]], ["Voronoi kept", "Voronoi lost"])
 
     def test_bad_entries_are_refused(self):
         for name, entry, key in (("plots", {"points": [{"label": "a", "x": [1], "y": [1, 2]}]}, "points"),
