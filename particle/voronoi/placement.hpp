@@ -14,10 +14,13 @@ namespace concord::particle::voronoi {
 /// of its clipped cell) until no particle moves further than `lloyd_tolerance` h, or
 /// `lloyd_sweeps` times.
 ///
+/// In bodies that are not convex, particles around re-entrant edges are moved by small steps
+/// until each sees all of its cell (README, Cells); lattices of equal spacings need none.
+///
 /// Then every particle is moved by a vector with components uniform in [-perturb h, perturb h]
 /// (scene::uniform_random of seed, particle and component), halved until its distance to each
 /// wall that it lies before is at least half of what it was. Next to re-entrant edges particles
-/// stay where they were, if else some particle would not see all of its cell (README, Cells).
+/// stay where they were, if else some particle would not see all of its cell.
 /// Depends on the arguments alone, not on threads.
 ///
 /// Throws InputError at the problem's geometry where no particle fits, and what make_cells

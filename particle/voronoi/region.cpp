@@ -57,7 +57,9 @@ class WallFacets {
     }
     for (std::size_t k = 0; k < X.size(); ++k) {
       const std::size_t l = (k + 1) % X.size();
-      area += 0.5 * (X[k] - X[0]).cross(X[l] - X[0]);
+      const Vec3 triangle = 0.5 * (X[k] - X[0]).cross(X[l] - X[0]);
+      area += triangle;
+      total += triangle.norm();
       m_edges.push_back({{std::min(key[k], key[l]), std::max(key[k], key[l])}, {X[k], X[l]}});
     }
   }
@@ -77,6 +79,7 @@ class WallFacets {
   }
 
   Vec3 area = Vec3::Zero();
+  double total = 0;  ///< of the areas, whichever way they face
 
  private:
   const scene::Mesh& m_mesh;
@@ -112,6 +115,9 @@ void collect_walls(Region& region, const scene::Mesh& mesh, const SourcePosition
   }
   const double tolerance = relative_tolerance * region.extent();
   for (auto& [e, wall] : facets) {
+    if (wall.area.norm() < (1 - relative_tolerance) * wall.total)
+      throw InputError(where, "geometry", "the body on both sides of " + wall_name(mesh, e),
+                       "walls with the body on one side (Coherence joins doubled surfaces)");
     const std::vector<std::array<Vec3, 2>> outline = wall.outline();
     HalfSpace half{wall.area.normalized(), 0};
     for (const auto& s : outline)

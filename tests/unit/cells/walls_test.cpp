@@ -3,7 +3,10 @@
 
 #include "tests/unit/cells/bodies.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <set>
 
 namespace concord::particle::voronoi {
 namespace {
@@ -145,6 +148,75 @@ Curve Loop(1) = {1, 2, 3, 4}; Curve Loop(2) = {11, 12, 13, 14}; Plane Surface(1)
         X.push_back(Vec3(.5, .5, z) + turn * P);
     }
   expect_identities(mesh, make_cells(mesh, 3, 1, X), X);
+}
+
+/// A cube of 2 m without one of its eighths, structured: seven blocks around a point.
+std::string seven_blocks() {
+  std::set<std::string> lines, faces;
+  std::string points, volumes;
+  const int step[] = {1, 3, 9};
+  const auto line = [&](int axis, int p) {
+    const int tag = 100 * (axis + 1) + p;
+    lines.insert(fmt::format("Line({}) = {{{}, {}}};\n", tag, p, p + step[axis]));
+    return tag;
+  };
+  const auto face = [&](int axis, int p) {
+    const int tag = 1000 * (axis + 1) + p, b = (axis + 1) % 3, c = (axis + 2) % 3;
+    faces.insert(fmt::format(
+        "Curve Loop({0}) = {{{1}, {2}, -{3}, -{4}}}; Plane Surface({0}) = {{{0}}};\n", tag,
+        line(b, p), line(c, p + step[b]), line(b, p + step[c]), line(c, p)));
+    return tag;
+  };
+  for (int p = 1; p < 27; ++p)
+    points += fmt::format("Point({}) = {{{}, {}, {}, h}};\n", p, (p - 1) % 3, (p - 1) / 3 % 3,
+                          (p - 1) / 9);
+  for (const int p : {1, 2, 4, 5, 10, 11, 13})
+    volumes += fmt::format(
+        "Surface Loop({0}) = {{{1}, {2}, {3}, {4}, {5}, {6}}}; Volume({0}) = {{{0}}};\n", p,
+        face(0, p), face(0, p + 1), face(1, p), face(1, p + 3), face(2, p), face(2, p + 9));
+  std::string geo = "DefineConstant[ h = 0.25, structured = 1 ];\n" + points;
+  for (const std::string& text : lines) geo += text;
+  for (const std::string& text : faces) geo += text;
+  return geo + volumes +
+         "Physical Volume(\"body\") = {1, 2, 4, 5, 10, 11, 13};\n"
+         "Transfinite Curve \"*\" = Round(1/h) + 1; Transfinite Surface \"*\";\n"
+         "Transfinite Volume \"*\";\n";
+}
+
+/// Three re-entrant edges that meet in a corner.
+TEST(VoronoiWalls, ReEntrantCorner) {
+  const scene::Problem problem = problem_on(seven_blocks(), "3D", "lattice");
+  const scene::Mesh mesh = surface_of(problem, .5);
+  for (const std::uint64_t seed : {0, 1, 2, 3}) {
+    const auto X = place_particles(problem, .25, seed == 0 ? 0 : .25, seed);
+    EXPECT_EQ(X.size(), 448u);
+    const Cells cells = make_cells(mesh, 3, 1, X);
+    expect_identities(mesh, cells, X);
+    const Cells threads = make_cells(mesh, 3, 1, X, Executor(2));
+    ASSERT_EQ(threads.faces.size(), cells.faces.size());
+    EXPECT_EQ(threads.V, cells.V);
+    EXPECT_EQ(threads.centroid, cells.centroid);
+  }
+}
+
+/// A cell that reaches through a slot into the other leg is seen from behind there.
+TEST(VoronoiWalls, CellsInTwoPiecesAreRefused) {
+  const scene::Mesh mesh = surface_of(
+      problem_on(
+          plane(outline(
+              {{0, 0}, {1, 0}, {1, 1}, {.52, 1}, {.52, .3}, {.48, .3}, {.48, 1}, {0, 1}})),
+          "plane strain"),
+      .1);
+  std::vector<Vec3> X;
+  for (const double y : {.1, .22, .5, .7, .9})
+    for (const double x : {.1, .3, .7, .9}) X.emplace_back(x, y, 0);
+  X.emplace_back(.44, .26, 0);
+  X.emplace_back(.56, .26, 0);
+  expect_identities(mesh, make_cells(mesh, 2, 1, X), X);
+  for (Vec3& P : X)
+    if (P == Vec3(.3, .7, 0)) P[0] = .46;
+  const std::string text = message([&] { make_cells(mesh, 2, 1, X); });
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("(0.46, 0.7, 0)"), HasSubstr("seen from behind")));
 }
 
 TEST(VoronoiWalls, AParticleThatDoesNotSeeItsCellIsRefused) {
