@@ -316,8 +316,8 @@ TEST(InsideField, IsOfThirdOrderForSmoothFields) {
     return h;
   };
   for (const double perturb : {0.0, 0.25}) {
-    const FieldError coarse = field_error(6, perturb, u, H),
-                     fine = field_error(12, perturb, u, H);
+    const FieldError coarse = field_error(8, perturb, u, H),
+                     fine = field_error(16, perturb, u, H);
     EXPECT_GT(std::log2(coarse.rms() / fine.rms()), 2.6) << perturb;
     EXPECT_GT(std::log2(coarse.gradient / fine.gradient), 1) << perturb;
     EXPECT_LT(fine.rms(), 5e-4);
