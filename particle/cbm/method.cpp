@@ -64,6 +64,7 @@ class CbmMethod final : public ParticleMethod {
   CellSource cells(const scene::Settings& settings) const override {
     return settings.word("cells") == "mesh" ? CellSource::mesh : CellSource::delaunay;
   }
+  bool breaks() const override { return true; }
   std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                          const scene::Settings& settings,
                                          const Executor& executor) const override {

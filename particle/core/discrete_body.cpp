@@ -90,6 +90,7 @@ double ParticleBody::critical_step(std::span<const double> u) {
 std::unique_ptr<scene::DiscreteBody>
 ParticleMethod::discretise(const scene::Problem& problem,
                            const scene::RunRequest& request) const {
+  if (!breaks()) scene::refuse_fracture(problem, info().name);
   return std::make_unique<ParticleBody>(*this, problem, request);
 }
 

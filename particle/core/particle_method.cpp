@@ -226,11 +226,11 @@ std::shared_ptr<const scene::Field> field_of(Body& body, const scene::Samples& s
 void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
                          scene::Result& result) const {
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
+  if (!breaks()) scene::refuse_fracture(problem, m_info.name);
   const auto begin = Clock::now();
   const Executor executor(request.threads);
   Body body = make_particles(problem, request, settings, executor);
   std::unique_ptr<ForceModel> model = make_model(body, problem, settings, executor);
-  if (model->fracturing() == nullptr) scene::refuse_fracture(problem, m_info.name);
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, *model);
   const bool dissipative = model->viscous() || damped(problem, settings);

@@ -31,6 +31,9 @@ class ParticleMethod : public scene::Method, public scene::Discretises {
   /// Which cells lie between the particles of this formulation.
   virtual CellSource cells(const scene::Settings& settings) const;
 
+  /// Whether this formulation serves scenes with fracture; its models are then Fracturing.
+  virtual bool breaks() const { return false; }
+
   /// How this formulation divides the body among its particles: may replace V and m of `body`,
   /// which come with the barycentric volumes sum |t|/(n+1). Called before make_model.
   virtual void divide(Body& body, const scene::Problem& problem,
