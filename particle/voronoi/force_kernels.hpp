@@ -91,8 +91,8 @@ CONCORD_INLINE void ghost_duals(const Ghosts<Dim>& ghosts, Index a, const Tensor
   }
 }
 
-/// Adjoint of (VOR.9): with S = A_ab/L_ab, f_a += S (P_a + P_b) X_ab / 2, and -2 Y_a, -2 Y_b +=
-/// S (P_b - P_a) X_ab (x) t_ab. The rows' own particles are complete after it: Y_a becomes
+/// Adjoint of (VOR.9): with A = A_ab/L_ab X_ab, f_a += (P_a + P_b) A/2, and -2 Y_a, -2 Y_b +=
+/// (P_b - P_a) A/2 (x) 2 t_ab. The rows' own particles are complete after it: Y_a becomes
 /// dW/dH^V_a / V_a. In the paper's forms no bonds: Y_a / V_a + P_a.
 template <int Dim, Form form>
 CONCORD_CLONES void dual_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
@@ -100,27 +100,26 @@ CONCORD_CLONES void dual_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Ind
                               GhostVectors<Dim> vectors, PointForces points) {
   const Index *begin = bonds.begin.data(), *other = bonds.other.data();
   const double* shapes = bonds.shape.data();
-  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
   for (Index a = first; a < last; ++a) {
     double* record = Y.at(a);
     const Tensor<Dim> P_a = Tensor<Dim>::load(P.at(a));
-    const Vec<Dim> X_a = load<Vec<Dim>>(P.at(a) + vector_at<Dim>);
+    const Vec<Dim> X_a = load<Vec<Dim>>(P.at(a) + vector_place<Dim>);
     Tensor<Dim> Y_a = Tensor<Dim>::load(record);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
     if constexpr (form == Form::face_compatible) {
       for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
         const double* P_b = P.at(other[k]);
         double* Y_b = Y.at(other[k]);
         const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
-        const Vec<Dim> A = (load<Vec<Dim>>(P_b + vector_at<Dim>) - X_a) *
-                           broadcast(shape[ratio_at], Vec<Dim>{});
-        const Vec<Dim> from_a = P_a.times(A), from_b = Tensor<Dim>::load(P_b).times(A);
-        const Vec<Dim> flux = (from_a + from_b) * half, jump = from_b - from_a;
+        const Vec<Dim> half_A = (load<Vec<Dim>>(P_b + vector_place<Dim>) - X_a) *
+                                broadcast(shape[ratio_at], Vec<Dim>{});
+        const Vec<Dim> from_a = P_a.times(half_A),
+                       from_b = Tensor<Dim>::load(P_b).times(half_A);
+        const Vec<Dim> flux = from_a + from_b, jump = from_b - from_a;
         f_a += flux;
-        store(Y_b + vector_at<Dim>, load<Vec<Dim>>(Y_b + vector_at<Dim>) - flux);
-        const Vec<Dim> t = load<Vec<Dim>>(shape);
-        Y_a.add_outer(jump, t);
-        scatter_outer<Dim>(Y_b, jump, t);
+        store(Y_b + vector_place<Dim>, load<Vec<Dim>>(Y_b + vector_place<Dim>) - flux);
+        Y_a.add_outer(jump, shape);
+        scatter_outer<Dim>(Y_b, jump, shape);
       }
       face_walls<Dim>(ghosts, a, P_a, vectors, points, Y_a, f_a);
     } else {
@@ -134,7 +133,7 @@ CONCORD_CLONES void dual_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Ind
     }
     if constexpr (form != Form::quasi_static) ghost_duals<Dim>(ghosts, a, Y_a, vectors);
     Y_a.store(record);
-    store(record + vector_at<Dim>, f_a);
+    store(record + vector_place<Dim>, f_a);
   }
 }
 
@@ -146,7 +145,7 @@ CONCORD_INLINE void ghost_bonds(const GhostCursor<Dim>& cursor, GhostVectors<Dim
   const Ghosts<Dim>& ghosts = cursor.ghosts;
   for (Index k = ghosts.T_begin[cursor.row], end = ghosts.T_begin[cursor.row + 1]; k < end;
        ++k) {
-    double* f_b = Y.at(ghosts.T_other[k]) + vector_at<Dim>;
+    double* f_b = Y.at(ghosts.T_other[k]) + vector_place<Dim>;
     const Vec<Dim> share =
         Map::transpose_times(&ghosts.T[static_cast<std::size_t>(k) * Map::size],
                              load<Vec<Dim>>(vectors.tau(ghosts.T_ghost[k])));
@@ -178,29 +177,27 @@ CONCORD_CLONES void force_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, In
   GhostCursor<Dim> cursor(ghosts, first);
   const Index *begin = bonds.begin.data(), *other = bonds.other.data();
   const double* shapes = bonds.shape.data();
-  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
   for (Index a = first; a < last; ++a) {
     double* record = Y.at(a);
     const Tensor<Dim> Y_a = Tensor<Dim>::load(record);
     const Vec<Dim> X_a = point_of<Dim>(X, a);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* Y_b = Y.at(other[k]);
       const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
-      const Vec<Dim> t = load<Vec<Dim>>(shape),
-                     middle = (point_of<Dim>(X, other[k]) - X_a) * half;
+      const Vec<Dim> twice_t = load<Vec<Dim>>(shape), X_ab = point_of<Dim>(X, other[k]) - X_a;
       const Vec<Dim> force =
-          (Y_a.times(middle + t) + Tensor<Dim>::load(Y_b).times(middle - t)) *
+          (Y_a.times(X_ab + twice_t) + Tensor<Dim>::load(Y_b).times(X_ab - twice_t)) *
           broadcast(shape[ratio_at], Vec<Dim>{});
       f_a += force;
-      store(Y_b + vector_at<Dim>, load<Vec<Dim>>(Y_b + vector_at<Dim>) - force);
+      store(Y_b + vector_place<Dim>, load<Vec<Dim>>(Y_b + vector_place<Dim>) - force);
     }
     if (cursor.at(a)) {
       ghost_bonds<Dim, Map>(cursor, vectors, Y, f_a);
       ++cursor.row;
     }
     if (walls) ghost_walls<Dim, Map>(ghosts, a, vectors, points, f_a);
-    store(record + vector_at<Dim>, f_a);
+    store(record + vector_place<Dim>, f_a);
   }
 }
 

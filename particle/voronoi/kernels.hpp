@@ -91,25 +91,23 @@ CONCORD_CLONES void gradient_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts,
   GhostCursor<Dim> cursor(ghosts, first);
   const Index *begin = bonds.begin.data(), *other = bonds.other.data();
   const double* shapes = bonds.shape.data();
-  const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
   for (Index a = first; a < last; ++a) {
     double* record = H.at(a);
-    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_at<Dim>), X_a = point_of<Dim>(X, a);
+    const Vec<Dim> u_a = load<Vec<Dim>>(record + vector_place<Dim>), X_a = point_of<Dim>(X, a);
     Tensor<Dim> H_a = Tensor<Dim>::load(record);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* H_b = H.at(other[k]);
       const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
-      const Vec<Dim> t = load<Vec<Dim>>(shape),
-                     middle = (point_of<Dim>(X, other[k]) - X_a) * half;
-      const Vec<Dim> u_ab =
-          (load<Vec<Dim>>(H_b + vector_at<Dim>) - u_a) * broadcast(shape[ratio_at], Vec<Dim>{});
-      H_a.add_outer(u_ab, middle + t);
-      scatter_outer<Dim>(H_b, u_ab, middle - t);
+      const Vec<Dim> twice_t = load<Vec<Dim>>(shape), X_ab = point_of<Dim>(X, other[k]) - X_a;
+      const Vec<Dim> u_ab = (load<Vec<Dim>>(H_b + vector_place<Dim>) - u_a) *
+                            broadcast(shape[ratio_at], Vec<Dim>{});
+      H_a.add_outer(u_ab, X_ab + twice_t);
+      scatter_outer<Dim>(H_b, u_ab, X_ab - twice_t);
     }
     if (cursor.at(a)) {
       for (Index k = ghosts.T_begin[cursor.row], end = ghosts.T_begin[cursor.row + 1]; k < end;
            ++k) {
-        const Vec<Dim> u_ab = load<Vec<Dim>>(H.at(ghosts.T_other[k]) + vector_at<Dim>) - u_a;
+        const Vec<Dim> u_ab = load<Vec<Dim>>(H.at(ghosts.T_other[k]) + vector_place<Dim>) - u_a;
         double* u_g = vectors.u(ghosts.T_ghost[k]);
         store(u_g, load<Vec<Dim>>(u_g) +
                        Map::times(&ghosts.T[static_cast<std::size_t>(k) * Map::size], u_ab));
@@ -177,28 +175,28 @@ CONCORD_INLINE void local_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, In
     const double* mean_record = mean.at(a);
     double* record = H.at(a);
     const Tensor<Dim> mean_a = Tensor<Dim>::load(mean_record);
-    const Vec<Dim> u_a = load<Vec<Dim>>(mean_record + vector_at<Dim>),
-                   X_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    const Vec<Dim> u_a = load<Vec<Dim>>(mean_record + vector_place<Dim>),
+                   X_a = load<Vec<Dim>>(record + vector_place<Dim>);
     Tensor<Dim> H_a = Faces ? Tensor<Dim>::load(record) : mean_a;
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       const double* mean_b = mean.at(other[k]);
-      double* H_b = H.at(other[k]);
+      double* H_b = H.records + (mean_b - mean.records);  // rings of one size
       const double* shape = shapes + static_cast<std::size_t>(k) * shape_size;
-      const Vec<Dim> X_ab = load<Vec<Dim>>(H_b + vector_at<Dim>) - X_a,
-                     u_ab = load<Vec<Dim>>(mean_b + vector_at<Dim>) - u_a;
+      const Vec<Dim> X_ab = load<Vec<Dim>>(H_b + vector_place<Dim>) - X_a,
+                     u_ab = load<Vec<Dim>>(mean_b + vector_place<Dim>) - u_a;
       Tensor<Dim> sum = Tensor<Dim>::load(mean_b);
       for (int i = 0; i < Dim; ++i) sum.column[i] += mean_a.column[i];
       if constexpr (Faces) {
-        const Vec<Dim> s = broadcast(0.5 * shape[ratio_at], Vec<Dim>{});
-        const Vec<Dim> affine = sum.times(load<Vec<Dim>>(shape));
-        H_a.add_outer((affine + u_ab) * s, X_ab);
+        const Vec<Dim> s = broadcast(shape[ratio_at], Vec<Dim>{});
+        const Vec<Dim> affine = sum.times(shape) * half;
+        H_a.add_outer((u_ab + affine) * s, X_ab);
         scatter_outer<Dim>(H_b, (u_ab - affine) * s, X_ab);
       }
       if constexpr (Contact) {
         const Vec<Dim> local = u_ab - sum.times(X_ab) * half, x_ab = X_ab + u_ab;
         store(local_out, local), store(x_out, x_ab), store(X_out, X_ab);
         store(products, lane_sums(local * x_ab, x_ab * x_ab));
-        *ratio = shape[ratio_at];
+        *ratio = 2 * shape[ratio_at];
         local_out += S, x_out += S, X_out += S, products += 2, ++ratio;
       }
     }
@@ -248,7 +246,7 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, const Ghosts<Dim>& ghosts
   for (Index a = first; a < last; ++a) {
     double* record = Y.at(a);
     Tensor<Dim> Y_a = Tensor<Dim>::load(record);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_at<Dim>);
+    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
     for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
       double* Y_b = Y.at(other[k]);
       const Vec<Dim> local = load<Vec<Dim>>(local_in), x_ab = load<Vec<Dim>>(x_in),
@@ -257,7 +255,7 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, const Ghosts<Dim>& ghosts
       const Vec<Dim> q = local * broadcast(*K, Vec<Dim>{}) + x_ab * c;
       const Vec<Dim> p = q + (local - x_ab * broadcast(*s, Vec<Dim>{})) * c;
       f_a += p;
-      store(Y_b + vector_at<Dim>, load<Vec<Dim>>(Y_b + vector_at<Dim>) - p);
+      store(Y_b + vector_place<Dim>, load<Vec<Dim>>(Y_b + vector_place<Dim>) - p);
       Y_a.add_outer(q, X_ab);
       scatter_outer<Dim>(Y_b, q, X_ab);
       local_in += S, x_in += S, X += S, ++K, ++share, ++s;
@@ -271,7 +269,7 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, const Ghosts<Dim>& ghosts
       Y_a.add_outer(r + r, ghost.X);
     }
     Y_a.store(record);
-    store(record + vector_at<Dim>, f_a);
+    store(record + vector_place<Dim>, f_a);
   }
 }
 

@@ -69,10 +69,10 @@ Bonds make_bonds(const Body& body, const Cells& cells) {
     ++bonds.begin[face.a + 1];
     bonds.other.push_back(face.b);
     const Vec3 X_a = body.position(face.a), X_b = body.position(face.b);
-    const Vec3 t = offset_of(face, X_a, X_b);
+    const Vec3 X_ab = X_b - X_a, t = offset_of(face, X_a, X_b);
     double* shape = &bonds.shape[k * shape_size];
-    for (int i = 0; i < body.dim; ++i) shape[i] = t[i];
-    shape[ratio_at] = face.A / (X_b - X_a).norm();
+    shape[ratio_at] = 0.5 * face.A / X_ab.norm();
+    for (int i = 0; i < body.dim; ++i) shape[i] = 2 * t[i];
   }
   for (Index a = 0; a < n; ++a) bonds.begin[a + 1] += bonds.begin[a];
   return bonds;

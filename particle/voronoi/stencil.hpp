@@ -7,18 +7,18 @@
 
 namespace concord::particle::voronoi {
 
-/// All bonds: A_ab = A/L X_ab, B_ab = A/L (X_ab/2 + t_ab), B_ba = A/L (-X_ab/2 + t_ab), with
-/// X_ab from the positions of the particles.
+/// All bonds. With S = A_ab/L_ab the area vector is S X_ab, B_ab = S/2 (X_ab + 2 t_ab) and B_ba
+/// = S/2 (-X_ab + 2 t_ab); X_ab comes from the positions of the particles.
 struct Bonds {
   std::vector<Index> begin;  ///< row of particle a: bonds [begin[a], begin[a+1])
   std::vector<Index> other;  ///< b > a of each bond, ascending in a row
-  Column shape;              ///< four doubles a bond: t_ab [m] and, in the last, A_ab/L_ab [m]
+  Column shape;              ///< four doubles a bond: 2 t_ab [m] and, in the last, S/2 [m]
 
   std::size_t count() const { return other.size(); }
   Index particles() const { return static_cast<Index>(begin.size()) - 1; }
 };
-inline constexpr std::size_t shape_size = 4;
-inline constexpr std::size_t ratio_at = 3;  ///< where A/L is
+/// Doubles in the shape of a bond, and where in it S/2 is.
+inline constexpr std::size_t shape_size = 4, ratio_at = 3;
 
 /// One ghost.
 template <int Dim> struct GhostRecord {

@@ -36,7 +36,7 @@ template <int Dim> class Space {
  public:
   explicit Space(const Setting<Dim>& s)
       : buffer(s.bonds, Dim, s.contact()), m_near(s.reach.window(2) - 1),
-        m_far(s.reach.window(3) - 1) {
+        m_far(s.reach.window(s.contact() ? 3 : 2) - 1) {
     m_mean.assign((m_near + 1) * record_size<Dim>, 0.0);
     m_H = m_mean;
     m_Y.assign((m_far + 1) * record_size<Dim>, 0.0);
@@ -74,7 +74,7 @@ template <int Dim> class Sweep {
     m_part = part;
     m_f = f;
     Index done = m_s.reach.bottom(part.first);  // rows that add to the part's forces
-    m_duals = m_s.reach.bottom(done);
+    m_duals = m_opened_Y = m_s.reach.bottom(done);
     start_faces(m_s.reach.bottom(m_duals));
     while (done < part.last) {
       const Index last = std::min(done + Reach::chunk, part.last);
@@ -160,7 +160,7 @@ template <int Dim> class Sweep {
       gradients_to(top);
       if (top > m_opened) {
         open_records<Dim>(m_space.H(), m_opened, top, X);
-        open_records<Dim>(m_space.Y(), m_opened, top);
+        if (contact()) open_records<Dim>(m_space.Y(), m_opened, top);
         if (viscous()) open_records<Dim>(m_space.rate(), m_opened, top, X);
         m_opened = top;
       }
@@ -232,7 +232,12 @@ template <int Dim> class Sweep {
   void duals_to(Index last) {
     while (m_duals < last) {
       const Index end = std::min(m_duals + Reach::chunk, m_s.bonds.particles());
-      stresses_to(m_s.reach.top(end));
+      const Index top = m_s.reach.top(end);
+      stresses_to(top);
+      if (!contact() && top > m_opened_Y) {
+        open_records<Dim>(m_space.Y(), m_opened_Y, top);
+        m_opened_Y = top;
+      }
       by_ownership(m_duals, end,
                    [&](Index first, Index to, bool own) { dual(first, to, own); });
       m_duals = end;
@@ -269,8 +274,8 @@ template <int Dim> class Sweep {
   const double *m_u, *m_v;
   double* m_f = nullptr;
   ParticleRange m_part{0, 0};
-  Index m_gradients = 0, m_faces = 0, m_duals = 0;  ///< rows done
-  Index m_opened_mean = 0, m_opened = 0;            ///< records that have been opened
+  Index m_gradients = 0, m_faces = 0, m_duals = 0;        ///< rows done
+  Index m_opened_mean = 0, m_opened = 0, m_opened_Y = 0;  ///< records that have been opened
   Index m_bad = -1;
 };
 

@@ -109,17 +109,18 @@ template <int Dim> class Evaluation {
     const Bonds& bonds = m_setting.bonds;
     const double* X = m_setting.body.X.data();
     const Tensor<Dim> mean_a = Tensor<Dim>::load(mean.at(a));
-    const Vec<Dim> u_a = load<Vec<Dim>>(mean.at(a) + vector_at<Dim>), X_a = point_of<Dim>(X, a);
+    const Vec<Dim> u_a = load<Vec<Dim>>(mean.at(a) + vector_place<Dim>),
+                   X_a = point_of<Dim>(X, a);
     double energy = 0;
     for (Index k = bonds.begin[a]; k < bonds.begin[a + 1]; ++k) {
       const double* mean_b = mean.at(bonds.other[k]);
-      const Vec<Dim> u_ab = load<Vec<Dim>>(mean_b + vector_at<Dim>) - u_a,
+      const Vec<Dim> u_ab = load<Vec<Dim>>(mean_b + vector_place<Dim>) - u_a,
                      X_ab = point_of<Dim>(X, bonds.other[k]) - X_a, x_ab = X_ab + u_ab;
       Tensor<Dim> sum = Tensor<Dim>::load(mean_b);
       for (int i = 0; i < Dim; ++i) sum.column[i] += mean_a.column[i];
       const Vec<Dim> local = u_ab - sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
       const v2d products = lane_sums(local * x_ab, x_ab * x_ab);
-      const double ratio = bonds.shape[k * shape_size + ratio_at],
+      const double ratio = 2 * bonds.shape[k * shape_size + ratio_at],
                    K_t = m_setting.factors.tangential * ratio,
                    K_n = m_setting.factors.normal * ratio;
       energy += 0.5 * K_t * lane_sum(local * local) +
