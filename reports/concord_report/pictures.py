@@ -16,6 +16,7 @@ from .loading import number
 from .palette import RED_BLUE, VIRIDIS
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
+SIGNS = 0.3  # of the larger end: a smaller one of the other sign does not make a scale that is white at 0
 FOLLOW_FROM = 1.5  # bodies that move by more of their own size from row to row are followed
 CODE = ("render", "render_vtk", "render_lines", "render_plane", "render_scatter", "render_cells", "plane_cells", "solid_cells",
         "voronoi_cells", "films", "frames", "palette")
@@ -31,7 +32,7 @@ def entries(study):
     out = []
     for picture in study.listed("pictures"):
         panels, times = picture.get("panels"), picture.get("times")
-        if not panels and not times and not picture.get("animate"):
+        if not panels and not times and films.wanted(picture) is None:
             out.append((picture, None))
             continue
         shared = {k: v for k, v in picture.items() if k not in ("panels", "caption", "times")}
@@ -206,7 +207,7 @@ def _limits(low, high, wanted=None, difference=False):
         return [-size, size], True
     if isinstance(wanted, list):
         return wanted, wanted[0] == -wanted[1]
-    if low < 0 < high and min(-low, high) > 0.05 * max(-low, high):
+    if low < 0 < high and min(-low, high) > SIGNS * max(-low, high):
         size = max(-low, high)
         return [-size, size], True
     if 0 <= low < 0.3 * high:

@@ -5,6 +5,7 @@ import numpy as np
 
 CORNERS = {5: 3, 22: 3, 9: 4, 23: 4, 28: 4}  # VTK type: corners; nodes on edges follow, then the centre
 NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9}
+TORN = 1.6  # times its length in the reference body: a longer edge joins the sides of a crack
 SLENDER = 1.5  # spacings: a larger circumradius is of a triangle across a notch, not in the body
 
 
@@ -111,11 +112,11 @@ def _rim(corners, pieces=PIECES):
     return np.interp(fine, knots, places[:, 0]), np.interp(fine, knots, places[:, 1])
 
 
-def shares(reference, positions, h):
+def shares(reference, positions, h, torn=False):
     """(quadrilaterals, owner of each, particles without any, the body's edge as lines). The triangles
     between neighbouring particles of the reference body are cut where points are as near to one
     particle as to the next; the pieces next to a particle are its share, carried along by the
-    deformation."""
+    deformation. Of a body that is `torn`, triangles across a crack are left out."""
     from matplotlib.tri import Triangulation
     try:
         corner = Triangulation(reference[:, 0], reference[:, 1]).triangles
@@ -124,6 +125,10 @@ def shares(reference, positions, h):
     opposite = np.linalg.norm(reference[np.roll(corner, -1, axis=1)] - reference[np.roll(corner, 1, axis=1)], axis=2)
     weight, radius = _centres(opposite)
     inside = radius <= SLENDER * max(h or 0.0, float(np.median(opposite)))
+    if torn:
+        now = positions[corner]
+        longest = np.linalg.norm(np.roll(now, -1, axis=1) - np.roll(now, 1, axis=1), axis=2)
+        inside &= (longest <= TORN * opposite).all(axis=1)
     corner, weight = corner[inside], weight[inside]
     x = positions[corner]
     centre = np.repeat(np.einsum("tk,tkd->td", weight, x)[:, None], 3, axis=1)

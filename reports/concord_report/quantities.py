@@ -46,6 +46,7 @@ FIELDS = {  # point fields of the frames: (text, unit)
     "kirchhoff_mises": ("equivalent Kirchhoff stress", "Pa"),
     "energy_density": ("strain energy density", "J/m³"),
     "damage": ("damage", ""),
+    "intact_share": ("share of the averaging volume left", ""),
 }
 
 COMPARED = ("plastic_strain", "kirchhoff_mises", "von_mises", "pressure", "energy_density", "damage")

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import frames, plane_cells, voronoi_cells
 
+CRACKS = "intact_share"  # a field that only bodies have whose bonds can break
 GREY = "#9e9e9e"
 PALE = "#b7cfe6"  # of bodies without a field
 EDGES = (0.05, 0.06, 0.08, 0.28)
@@ -50,7 +51,7 @@ def draw(frame, job):
         elif job["cells"]:
             _cells(axes, job, reference, positions, data, per_metre, look)
         else:
-            _particles(axes, reference[:, :2], positions[:, :2], data, job["h"], per_metre, look)
+            _particles(axes, reference[:, :2], positions[:, :2], data, job["h"], per_metre, look, CRACKS in frame["fields"])
     else:
         _elements(axes, frame, positions[:, :2], data, per_metre, look)
     canvas.draw()
@@ -74,12 +75,12 @@ def _rim(axes, lines):
     axes.add_collection(LineCollection(lines, colors=[RIM], linewidths=1.1, capstyle="round"), autolim=False)
 
 
-def _particles(axes, reference, positions, data, h, per_metre, look):
+def _particles(axes, reference, positions, data, h, per_metre, look, torn):
     from matplotlib.collections import PolyCollection
     good = np.isfinite(positions).all(axis=1)
     reference, positions = reference[good], positions[good]
     data = np.ma.masked_invalid(data[good])
-    quads, owner, alone, edge = plane_cells.shares(reference, positions, h)
+    quads, owner, alone, edge = plane_cells.shares(reference, positions, h, torn)
     filled = PolyCollection(quads, array=data[owner], edgecolors="face", linewidths=0.5, **look)
     axes.add_collection(filled, autolim=False)
     _rim(axes, edge)

@@ -190,9 +190,9 @@ def _surface(frame, positions, data, job):
     return actors
 
 
-def _shade(actor, flat):
+def _shade(actor, front):
     look = actor.GetProperty()
-    if flat:
+    if front:
         look.LightingOff()
         return
     look.SetAmbient(0.38)
@@ -248,7 +248,7 @@ def draw(frame, job):
         actors = _surface(frame, positions, data, job)
     for position, actor in enumerate(actors):
         if position == 0:
-            _shade(actor, job["view"]["flat"])
+            _shade(actor, job["view"]["front"])
         renderer.AddActor(actor)
     if job.get("plate"):
         actors = [_plate(job)]

@@ -14,7 +14,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent.parent / "reports")]
 import fixture  # noqa: E402  (needs the paths above)
 import fixture_voronoi  # noqa: E402
 import numpy as np  # noqa: E402
-from concord_report import cache, captions, cases, films, frames, loading, page, pictures, render, voronoi_cells  # noqa: E402
+from concord_report import cache, captions, cases, films, frames, loading, page, pictures, plane_cells, render, voronoi_cells  # noqa: E402
 from concord_report.loading import InputError  # noqa: E402
 from test_figures import drawing, row, spec_of, study  # noqa: E402
 
@@ -87,6 +87,22 @@ class Cells(unittest.TestCase):
         with self.assertRaisesRegex(InputError, "broken.hdf"):
             voronoi_cells.read(self.folder / "broken.hdf")
         self.assertIsNone(voronoi_cells.path_in(HERE))
+
+
+class Cracks(unittest.TestCase):
+    def test_nothing_is_drawn_across_a_crack(self):
+        X = fixture.lattice(1, (8, 4, 0))[0][::2, :2]  # one of its two layers
+        self.assertEqual(len(X), 9 * 5)
+        x = X + np.where(X[:, :1] > 4.5, [[1.0, 0]], [[0, 0]])
+        def area(quads):
+            a, b = quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]
+            return abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2
+        for torn, wanted in ((False, 9 * 4), (True, 7 * 4)):  # between the columns at 4 and 5 there is nothing left
+            quads, _, alone, edge = plane_cells.shares(X, x, 1.0, torn)
+            self.assertAlmostEqual(area(quads), wanted)
+            self.assertEqual((len(alone), len(edge)), (0, 2 * (8 + 4) if not torn else 2 * (4 + 4) + 2 * (3 + 4)))
+        x[7] += 30
+        self.assertIn(7, plane_cells.shares(X, x, 1.0, True)[2])  # one that flew off
 
 
 class Films(unittest.TestCase):
