@@ -150,30 +150,44 @@ void perturb(std::vector<Vec3>& X, const Distances& walls, int dim, double size,
   }
 }
 
-/// Puts particles back where some cell is not seen from its particle: that particle and those
-/// neighbours that have walls too.
+/// Particles to put back where some cell is not seen from its particle: that one, those of its
+/// neighbours that have walls, and the one that ought to have the edge; widely: all neighbours.
+std::vector<char> around_hidden(const Cells& cells, std::span<const Vec3> X, bool widely) {
+  std::vector<char> at_wall(X.size(), widely), hidden(X.size(), 0);
+  for (std::size_t f = cells.interior; f < cells.faces.size(); ++f)
+    at_wall[cells.faces[f].a] = 1;
+  std::vector<char> found(X.size(), 0);
+  for (const Index f : hidden_walls(cells, X, clear_distance)) {
+    const Face& face = cells.faces[f];
+    hidden[face.a] = found[face.a] = 1;
+    const Index b = before_both(cells, X, face.a, face.wall, face.C);
+    if (b >= 0) found[b] = 1;
+  }
+  for (std::size_t f = 0; f < cells.interior; ++f) {
+    const Face& face = cells.faces[f];
+    if (hidden[face.a] && at_wall[face.b]) found[face.b] = 1;
+    if (hidden[face.b] && at_wall[face.a]) found[face.a] = 1;
+  }
+  return found;
+}
+
+/// Takes displacements back until every particle sees its cell, or none there is left.
 void withdraw(std::vector<Vec3>& X, const std::vector<Vec3>& unperturbed,
               const scene::Mesh& mesh, const Executor& executor, const CellOptions& options) {
-  for (;;) {
+  bool moved = true;
+  while (moved) {
     const Cells cells = all_cells(mesh, 1, X, executor, options);
-    std::vector<char> at_wall(X.size(), 0), hidden(X.size(), 0);
-    for (std::size_t f = cells.interior; f < cells.faces.size(); ++f)
-      at_wall[cells.faces[f].a] = 1;
-    for (const Index f : hidden_walls(cells, X, clear_distance)) hidden[cells.faces[f].a] = 1;
-    std::vector<char> back = hidden;
-    for (std::size_t f = 0; f < cells.interior; ++f) {
-      const Face& face = cells.faces[f];
-      if (hidden[face.a] && at_wall[face.b]) back[face.b] = 1;
-      if (hidden[face.b] && at_wall[face.a]) back[face.a] = 1;
+    moved = false;
+    for (const bool widely : {false, true}) {
+      const std::vector<char> back = around_hidden(cells, X, widely);
+      for (std::size_t a = 0; a < X.size(); ++a) {
+        if (!back[a] || X[a] == unperturbed[a]) continue;
+        X[a] = unperturbed[a];
+        moved = true;
+      }
+      if (moved) break;
     }
-    bool moved = false;
-    for (std::size_t a = 0; a < X.size(); ++a) {
-      if (!back[a] || X[a] == unperturbed[a]) continue;
-      X[a] = unperturbed[a];
-      moved = true;
-    }
-    if (!moved) return;  // what is left, make_cells reports
-  }
+  }  // what is left, make_cells reports
 }
 
 }  // namespace
