@@ -21,7 +21,7 @@ constexpr double relative_tolerance = 1e-9;  // of the body's extent: same plane
 
 void require_flat(const scene::Mesh& mesh, Index e, const SourcePosition& where) {
   const auto refuse = [&](Index curved) {
-    throw InputError(where, "geometry", "the curved " + wall_name(mesh, curved),
+    throw InputError(where, "geometry", wall_name(mesh, curved) + ", which is curved",
                      "plane walls only (straight ones in plane problems): the cells of the "
                      "Voronoi method end at mirror planes of their particles");
   };
