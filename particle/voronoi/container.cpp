@@ -9,7 +9,12 @@ namespace concord::particle::voronoi {
 bool FirstCuts::cut_cell(voro::voronoicell_neighbor& cell, double x, double y, double z) {
   const Vec3 X(x, y, z);
   const double h = m_region.scale.spacing;
-  for (int k = 0; m_box && k < 3; ++k)
+  const bool box =
+      m_box &&
+      std::any_of(m_region.planes.begin(), m_region.planes.end(), [&](const Plane& plane) {
+        return !plane.supporting && std::abs(plane.half.beyond(X)) < reach * h;
+      });
+  for (int k = 0; box && k < 3; ++k)
     for (const double sign : {-1.0, 1.0}) {
       const HalfSpace half{sign * Vec3::Unit(k), sign * X[k] + reach * h};
       if (!cut(cell, half, X, h, local_box)) return false;

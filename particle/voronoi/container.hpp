@@ -24,8 +24,8 @@ bool cut(Cell& cell, const HalfSpace& half, const Vec3& X, double spacing, int i
   return cell.nplane(n[0], n[1], n[2], -2 * spacing * half.beyond(X), id);
 }
 
-/// What cuts every cell at first: supporting planes in reach and, in bodies that are not
-/// convex, a box around the particle.
+/// What cuts every cell at first: supporting planes in reach and, near re-entrant walls, behind
+/// which no particles bound the search, a box around the particle.
 class FirstCuts final : public voro::wall {
  public:
   FirstCuts(const Region& region, bool box) : m_region(region), m_box(box) {}
