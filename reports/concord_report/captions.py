@@ -41,7 +41,8 @@ def caption(job):
 
 def in_rows(whole):
     """True for a figure with a row of panels for each instant; instants of one body stand side by side."""
-    return bool(whole and whole.get("times")) and len(whole.get("panels") or []) > 1
+    several = whole and (whole.get("panels") or (whole["variant"] if isinstance(whole.get("variant"), list) else []))
+    return bool(whole and whole.get("times")) and len(several) > 1
 
 
 def _as_wanted(job):
@@ -103,7 +104,7 @@ def note(jobs):
         out.append(f"One {'' if plain else 'colour scale and one '}view for {which} pictures"
                    + (", each instant centred on its bodies." if any(j["followed"] for j in jobs) else "."))
     if any(bar_):
-        ends_ = "The scale ends at the 1st and 99th percentile. " if jobs[0]["picture"].get("range") == "robust" else ""
+        ends_ = "The scale ends at the 1st and 99th percentile of all pictures together. " if jobs[0]["picture"].get("range") == "robust" else ""
         out.append(f"{ends_}Values beyond an end of the scale, where it has a tip, have that end’s colour: "
                    f"{share(max(j['clipped'] for j in jobs))} of the points{' of a picture' if count > 1 else ''}.")
     if jobs[0]["view"]["front"] and not jobs[0]["view"]["flat"]:

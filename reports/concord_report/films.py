@@ -36,7 +36,8 @@ def together(facts):
         return [[min(f[key][0][k] for f in facts) for k in range(3)], [max(f[key][1][k] for f in facts) for k in range(3)]]
     def span(key):
         return [min(f[key][0] for f in facts), max(f[key][1] for f in facts)]
-    return {**facts[-1], "seen": ends("seen"), "seen_flat": ends("seen_flat"), "range": span("range"), "robust": span("robust"),
+    return {**facts[-1], "seen": ends("seen"), "seen_flat": ends("seen_flat"), "range": span("range"),
+            "quantiles": [q for f in facts for q in f["quantiles"]],
             "flat": all(f["flat"] for f in facts), "thin": facts[0]["thin"], "plane": all(f["plane"] for f in facts), "nan": max(f["nan"] for f in facts)}
 
 

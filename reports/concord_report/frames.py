@@ -9,6 +9,7 @@ THIN = 0.3  # of its other extents: a body that is thinner along z is seen along
 HELD = 0.9  # of a face's points: fewer do not hold it
 PLAIN = "none"  # instead of a field: the shape alone
 TAILS = (1, 99)  # percentiles at the ends of a robust scale
+QUANTILES = [k / 2 for k in range(201)]  # that stand for a picture's values
 POINT_CELL = 1  # VTK_VERTEX: the frame of a particle method
 
 
@@ -116,7 +117,7 @@ def facts(path, color, scale, crop=None):
         return [along.min(axis=0).tolist(), along.max(axis=0).tolist()]
     particles = is_particles(frame)
     return {"seen": seen(view_axes(False)), "seen_flat": seen(view_axes(True)),
-            "range": [float(good.min()), float(good.max())], "robust": np.percentile(good, TAILS).tolist(), "flat": flat,
+            "range": [float(good.min()), float(good.max())], "quantiles": np.percentile(good, QUANTILES).tolist(), "flat": flat,
             "thin": _thin(positions if reference is None else reference), "points": len(positions),
             "particles": particles, "plate": plate, "middle": middle, "nan": int(len(data) - np.isfinite(data).sum()),
             "plane": flat and (particles or plane_cells.supported(frame))}

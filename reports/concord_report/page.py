@@ -32,7 +32,7 @@ def _plots(study, cases, store, warnings):
     out = []
     for number, (plot, spec) in enumerate(plots.plot_specs(study, cases)):
         if isinstance(spec, str):
-            what = f"{plot.get('kind')} plot of {plot.get('quantity') or plot.get('y')}"
+            what = f"{plot.get('kind')} plot of {plot.get('quantity') or plot.get('y') or ' and '.join(plot.get('columns') or [])}"
             warnings.append(f"{study.name}: no {what}: {spec}")
             out.append({"kind": "missing", "title": f"No {what}", "why": spec})
             continue

@@ -32,6 +32,8 @@ def entries(study):
     out = []
     for picture in study.listed("pictures"):
         panels, times = picture.get("panels"), picture.get("times")
+        if not panels and isinstance(picture.get("variant"), list) and len(picture["variant"]) > 1:
+            panels = [{"variant": one, "caption": one} for one in picture["variant"]]
         if not panels and not times and films.wanted(picture) is None:
             out.append((picture, None))
             continue
@@ -90,7 +92,8 @@ def prepare(study, cases, store, warnings):
             job.update(films.together([_facts(job, p, digest, store) for p, digest in zip(paths, job["file"])]))
             _how(job, picture, study.folder / row["run"])
         if "missing" in job:
-            who = " ".join(str(picture[k]) for k in ("method", "variant", "resolution") if picture.get(k))
+            who = " ".join(" or ".join(map(str, v)) if isinstance(v := picture[k], list) else str(v)
+                           for k in ("method", "variant", "resolution") if picture.get(k))
             job["label"] = who
             remark = f"{study.name}: no picture of {who or 'the study'}: {job['missing']}"
             warnings += [] if remark in warnings else [remark]  # once for all instants
@@ -161,8 +164,7 @@ def _share_scales(jobs):
         job["shared"] = shared and len(same) > 1
         job["group"] = (id(job["whole"]), job["scene"], job["color"], str(wanted), str(job["crop"]), bool(job["film"]),
                         "" if shared else jobs.index(job))
-        ranges = [j["robust" if wanted == "robust" else "range"] for j in (same if shared else [job])]
-        span = min(r[0] for r in ranges), max(r[1] for r in ranges)
+        span = _tails(same) if wanted == "robust" else [e(j["range"][k] for j in (same if shared else [job])) for k, e in ((0, min), (1, max))]
         job["limits"], job["diverging"] = _limits(*span, wanted, job["color"].endswith("_difference"))
         low, high = (e(j["range"][k] for j in same) for k, e in ((0, min), (1, max)))
         job["beyond"] = [low < job["limits"][0], high > job["limits"][1]]
@@ -197,6 +199,17 @@ def _view(job, alike, flat):
         if flat and (job["crop"] or {}).get(along):
             view["low"][k], view["high"][k] = map(float, job["crop"][along])
     return view
+
+
+def _tails(jobs):
+    """The low and the high percentile of the values in all pictures, each picture with the same weight."""
+    pooled = sorted((value, 1 / len(job["quantiles"])) for job in jobs for value in job["quantiles"])
+    ends, at, whole = [], 0.0, float(len(jobs))
+    for value, weight in pooled:
+        at += weight
+        while len(ends) < 2 and at >= whole * frames.TAILS[len(ends)] / 100 - 1e-9:
+            ends.append(value)
+    return ends
 
 
 def _limits(low, high, wanted=None, difference=False):

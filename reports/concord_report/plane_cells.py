@@ -6,7 +6,7 @@ import numpy as np
 CORNERS = {5: 3, 22: 3, 9: 4, 23: 4, 28: 4}  # VTK type: corners; nodes on edges follow, then the centre
 NODES = {5: 3, 22: 6, 9: 4, 23: 8, 28: 9}
 TORN = 1.6  # times its length in the reference body: a longer edge joins the sides of a crack
-SLENDER = 1.5  # spacings: a larger circumradius is of a triangle across a notch, not in the body
+SLENDER = 1.5  # spacings, the local one where that is larger: a larger circumradius is of a triangle across a notch, not in the body
 
 
 def _triangle_shape(nodes, r, s):
@@ -124,7 +124,7 @@ def shares(reference, positions, h, torn=False):
         return np.zeros((0, 4, 2)), np.zeros(0, int), np.arange(len(positions)), []
     opposite = np.linalg.norm(reference[np.roll(corner, -1, axis=1)] - reference[np.roll(corner, 1, axis=1)], axis=2)
     weight, radius = _centres(opposite)
-    inside = radius <= SLENDER * max(h or 0.0, float(np.median(opposite)))
+    inside = radius <= SLENDER * np.maximum(max(h or 0.0, float(np.median(opposite))), np.median(_nearest(corner, opposite), axis=1))
     if torn:
         now = positions[corner]
         longest = np.linalg.norm(np.roll(now, -1, axis=1) - np.roll(now, 1, axis=1), axis=2)
@@ -137,6 +137,14 @@ def shares(reference, positions, h, torn=False):
     alone = np.setdiff1d(np.arange(len(positions)), corner)
     ends = np.stack([corner, np.roll(corner, -1, axis=1)], -1).reshape(-1, 2)
     return quads, corner.reshape(-1), alone, list(positions[ends[_lonely(ends)]])
+
+
+def _nearest(corner, opposite):
+    """How far the nearest neighbour of each corner is: the spacing where particles are not equally dense."""
+    near = np.full(corner.max() + 1, np.inf)
+    for k in range(3):
+        np.minimum.at(near, corner[:, k], np.minimum(opposite[:, k - 1], opposite[:, k - 2]))
+    return near[corner]
 
 
 def _centres(opposite):
