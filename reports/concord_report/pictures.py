@@ -154,6 +154,8 @@ def _share_scales(jobs):
         flat = all(j["flat"] for j in alike)
         job["plane"] = flat and all(j["plane"] for j in alike)
         job["view"] = _view(job, alike, flat)
+        if job["cells"] and not job["plate"] and job["draw"] == "body":  # no particle of it lies on the face that is held
+            job["plate"] = next((j["plate"] for j in alike if j["plate"] and j["scene"] == job["scene"]), None)
         job["one_scene"] = job["whole"] is not None and len({j["scene"] for j in alike}) == 1
         wanted = job["picture"].get("range")
         job["budget"] = films.BUDGET // len([j for j in alike if j["film"]] or [job])
