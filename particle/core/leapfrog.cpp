@@ -139,10 +139,17 @@ double Leapfrog::critical_step(double dt_factor) {
   return dt_factor * 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
 }
 
-double Leapfrog::largest_gradient() const {
+double Leapfrog::largest_gradient() {
+  const Body& body = m_model.body();
+  if (body.inside()) {  // simplices do not see what happens between particles and faces
+    m_H.resize(body.bulk);
+    m_model.gradients(m_u, m_H);
+    double largest = 0;
+    for (const Mat3& H : m_H) largest = std::max(largest, H.squaredNorm());
+    return std::sqrt(largest);
+  }
   // A bound that needs no tensors: the largest relative displacement over a bond of the
   // triangulation.
-  const Body& body = m_model.body();
   const Triangulation& t = body.triangulation;
   const int nv = t.dim + 1;
   double largest = 0;

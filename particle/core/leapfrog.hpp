@@ -20,7 +20,9 @@ struct LeapfrogOptions {
   int frames = 0;        ///< field frames over the run, besides the first
   int history_rows = 0;  ///< history rows over the run, besides the first
   /// omega_max is asked for again when the largest |H| of any particle changed by this much
-  /// since the last estimate.
+  /// since the last estimate. |H|: the largest stretch of an edge of the triangulation, or the
+  /// norm of the model's own gradients where particles lie inside the body: simplices do not
+  /// reach its faces then, and one layer has none.
   double reestimate_at = 0.05;
   /// Regions still exactly at rest are left out, by models that can (RestRegions); the same
   /// bits.
@@ -83,7 +85,7 @@ class Leapfrog {
   void kick(double dt, double damping);
   void drift(double dt);
   double critical_step(double dt_factor);
-  double largest_gradient() const;
+  double largest_gradient();
   bool settled(double fraction);
 
   const scene::Problem& m_problem;
@@ -96,6 +98,7 @@ class Leapfrog {
   std::vector<double> m_inverse_mass;
   Column m_u, m_v, m_f;  ///< displacement, half-step velocity, total force on all components
   Column m_v_full, m_acceleration;     ///< for output
+  std::vector<Mat3> m_H;               ///< where particles lie inside: for largest_gradient()
   std::optional<RestRegions> m_rest;   ///< while some particles are left out
   std::vector<ParticleRange> m_awake;  ///< particles that are worked on
   Index m_awake_count = 0;
