@@ -24,10 +24,12 @@ struct Roughness {
   double checkerboard() const;
 };
 
-/// Finds the edges when first asked, and keeps them.
+/// Finds the edges when first asked, and keeps them. For bodies with edges alone.
 class Hourglass {
  public:
   explicit Hourglass(const Body& body) : m_body(body) {}
+  /// Whether the numbers mean anything: a body in one layer has no triangulation, no edges.
+  bool defined() const { return !m_body.triangulation.simplices.empty(); }
   /// u: column of displacements; H: gradients H_a by the method's own interpolation.
   Roughness measure(std::span<const double> u, std::span<const Mat3> H);
 

@@ -13,10 +13,12 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                    const Constraints& constraints, const Executor& executor,
                    const std::filesystem::path& folder, bool frames, bool dissipative)
     : m_problem(problem), m_model(model), m_executor(executor),
-      m_quantities(problem, model, constraints), m_hourglass(model.body()),
-      m_free(constraints.dofs().empty()), m_dissipative(dissipative), m_folder(folder) {
+      m_quantities(problem, model, constraints), m_free(constraints.dofs().empty()),
+      m_dissipative(dissipative), m_folder(folder) {
   if (const Fracturing* fracturing = model.fracturing())
     m_crack.emplace(problem, model.body(), constraints, *fracturing);
+  else if (Hourglass(model.body()).defined())
+    m_hourglass.emplace(model.body());
   const ExternalLoads loads(problem, model);
   m_steady = !loads.depend_on_time();
   m_unloaded = loads.none();
@@ -38,10 +40,11 @@ std::vector<std::string> Recorder::columns() const {
     names.push_back(fmt::format("linear_momentum_{}_kg_m_s", axis));
   for (const char axis : {'x', 'y', 'z'})
     names.push_back(fmt::format("angular_momentum_{}_kg_m2_s", axis));
-  const std::vector<std::string> last =
-      m_crack ? CrackQuantities::columns()
-              : std::vector<std::string>{"nonaffine_energy_share", "checkerboard"};
-  names.insert(names.end(), last.begin(), last.end());
+  if (m_crack) {
+    const std::vector<std::string> last = CrackQuantities::columns();
+    names.insert(names.end(), last.begin(), last.end());
+  }
+  if (m_hourglass) names.insert(names.end(), {"nonaffine_energy_share", "checkerboard"});
   return names;
 }
 
@@ -107,7 +110,7 @@ void Recorder::row(const State& state) {
   m_any = true;
   const std::span<const Mat3> H = gradients(state);
   follow(b, state.impulse);
-  if (!m_crack) follow(b, m_hourglass.measure(state.u, H));
+  if (m_hourglass) follow(b, m_hourglass->measure(state.u, H));
   if (!m_history.active()) return;
   m_values.assign(1, state.t);
   m_quantities.append(state, H, m_values);
@@ -118,10 +121,8 @@ void Recorder::row(const State& state) {
   m_values.insert(m_values.end(), {b.external_work, b.total() - m_first.total()});
   m_values.insert(m_values.end(), b.linear.begin(), b.linear.end());
   m_values.insert(m_values.end(), b.angular.begin(), b.angular.end());
-  if (m_crack)
-    m_crack->append(m_values);
-  else
-    m_values.insert(m_values.end(), {m_share, m_checkerboard});
+  if (m_crack) m_crack->append(m_values);
+  if (m_hourglass) m_values.insert(m_values.end(), {m_share, m_checkerboard});
   m_history.append(m_values);
 }
 
@@ -179,7 +180,7 @@ void Recorder::add_invariants(scene::Result& result, bool damped) const {
 }
 
 void Recorder::add_hourglass(scene::Result& result) const {
-  if (!m_any || m_crack) return;
+  if (!m_any || !m_hourglass) return;
   result.quantities["nonaffine_energy_share"] = m_share;
   result.quantities["nonaffine_energy_share_max"] = m_share_max;
   if (m_energy_sum > 0)

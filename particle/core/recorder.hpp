@@ -48,7 +48,7 @@ class Recorder {
   /// Adds nonaffine_energy_share and checkerboard of the last row, their largest values
   /// (.._max), and the share of the energies summed over the rows
   /// (nonaffine_energy_share_mean). Nothing where bonds can break: across a crack it would
-  /// measure the opening.
+  /// measure the opening; nothing for bodies without edges (one layer of particles inside).
   void add_hourglass(scene::Result& result) const;
   /// Where bonds can break: adds what the cracks measure (CrackQuantities), energy_residual,
   /// the largest |energy_balance_J| over the largest |external work|, and dissipated_share of
@@ -71,10 +71,10 @@ class Recorder {
   ForceModel& m_model;
   const Executor& m_executor;
   Quantities m_quantities;
-  Hourglass m_hourglass;
   bool m_free, m_steady, m_unloaded;  ///< no displacement condition; constant loads; no loads
   bool m_dissipative;
   std::optional<CrackQuantities> m_crack;  ///< where bonds can break
+  std::optional<Hourglass> m_hourglass;    ///< where none can, and there are edges
   std::filesystem::path m_folder;
   scene::HistoryWriter m_history;
   scene::FrameWriter m_frames;
