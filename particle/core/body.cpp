@@ -61,7 +61,8 @@ scene::Mesh arrangement(const scene::Problem& problem, double h, CellSource cell
   request.shape = scene::CellShape::hypercube;
   try {
     return scene::make_mesh(problem, request);
-  } catch (const InputError&) {
+  } catch (const InputError& first) {
+    if (first.key() != "geometry") throw;  // the scene's conditions, not what gmsh can do
     request.shape = scene::CellShape::simplex;
     return scene::make_mesh(problem, request);
   }
