@@ -19,7 +19,12 @@ ParticleField::ParticleField(Body& body, std::vector<Vec3> X, std::vector<Vec3> 
   m_cell = body.h;
   for (int i = 0; i < m_dim; ++i)
     m_cells[i] = std::max(1, static_cast<int>(std::ceil((high[i] - m_low[i]) / m_cell)));
-  const std::size_t nv = m_dim + 1, count = m_simplices.size() / nv;
+  // In the grid: the simplices, or the particles of a body that has none.
+  const std::size_t nv = m_simplices.empty() ? 1 : m_dim + 1,
+                    count = m_simplices.empty() ? m_X.size() : m_simplices.size() / nv;
+  const auto vertex = [&](std::size_t s, std::size_t k) {
+    return m_simplices.empty() ? static_cast<Index>(s) : m_simplices[s * nv + k];
+  };
   const auto grid_cell = [&](double x, int i) {
     return std::clamp(static_cast<int>((x - m_low[i]) / m_cell), 0, m_cells[i] - 1);
   };
@@ -28,8 +33,8 @@ ParticleField::ParticleField(Body& body, std::vector<Vec3> X, std::vector<Vec3> 
     for (int i = 0; i < m_dim; ++i) {
       double a = 1e300, b = -1e300;
       for (std::size_t k = 0; k < nv; ++k) {
-        a = std::min(a, m_X[m_simplices[s * nv + k]][i]);
-        b = std::max(b, m_X[m_simplices[s * nv + k]][i]);
+        a = std::min(a, m_X[vertex(s, k)][i]);
+        b = std::max(b, m_X[vertex(s, k)][i]);
       }
       lo[i] = grid_cell(a - 1e-9 * m_cell, i);
       hi[i] = grid_cell(b + 1e-9 * m_cell, i);
@@ -62,43 +67,59 @@ void ParticleField::weights(std::size_t simplex, const Vec3& X,
   for (int k = 1; k <= m_dim; ++k) w[0] -= w[k];
 }
 
-std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const {
+/// search(item) for what is in the grid cell at X, then in the cells about it too, ring by
+/// ring, until enough(ring).
+template <class Search, class Enough>
+void ParticleField::look_around(const Vec3& X, const Search& search,
+                                const Enough& enough) const {
   std::array<int, 3> c{0, 0, 0};
   for (int i = 0; i < m_dim; ++i)
     c[i] = std::clamp(static_cast<int>((X[i] - m_low[i]) / m_cell), 0, m_cells[i] - 1);
-  std::size_t best = 0;
-  double best_least = -1e300;
-  const auto try_cell = [&](int x, int y, int z) {
-    const std::size_t cell = (static_cast<std::size_t>(z) * m_cells[1] + y) * m_cells[0] + x;
-    for (Index k = m_begin[cell]; k < m_begin[cell + 1] && best_least < -1e-12; ++k) {
-      std::array<double, 4> trial{};
-      weights(m_inside[k], X, trial);
-      const double least = *std::min_element(trial.begin(), trial.begin() + m_dim + 1);
-      if (std::isfinite(trial[0] + trial[1] + trial[2] + trial[3]) && least > best_least)
-        best_least = least, best = m_inside[k], w = trial;
-    }
-  };
-  // The cell at X holds the simplex, unless X lies outside: then look further out, ring by
-  // ring.
   const int widest = std::max({m_cells[0], m_cells[1], m_cells[2]});
-  for (int ring = 0; ring <= widest && best_least == -1e300; ++ring) {
+  for (int ring = 0; ring <= widest; ++ring) {
     for (int z = std::max(0, c[2] - ring); z <= std::min(m_cells[2] - 1, c[2] + ring); ++z) {
       for (int y = std::max(0, c[1] - ring); y <= std::min(m_cells[1] - 1, c[1] + ring); ++y) {
-        for (int x = std::max(0, c[0] - ring); x <= std::min(m_cells[0] - 1, c[0] + ring); ++x)
-          try_cell(x, y, z);
+        for (int x = std::max(0, c[0] - ring); x <= std::min(m_cells[0] - 1, c[0] + ring);
+             ++x) {
+          const std::size_t cell =
+              (static_cast<std::size_t>(z) * m_cells[1] + y) * m_cells[0] + x;
+          for (Index k = m_begin[cell]; k < m_begin[cell + 1]; ++k) search(m_inside[k]);
+        }
       }
     }
+    if (enough(ring)) return;
   }
+}
+
+std::size_t ParticleField::locate(const Vec3& X, std::array<double, 4>& w) const {
+  std::size_t best = 0;
+  double best_least = -1e300;
+  const auto try_simplex = [&](Index s) {
+    if (best_least >= -1e-12) return;
+    std::array<double, 4> trial{};
+    weights(s, X, trial);
+    const double least = *std::min_element(trial.begin(), trial.begin() + m_dim + 1);
+    if (std::isfinite(trial[0] + trial[1] + trial[2] + trial[3]) && least > best_least)
+      best_least = least, best = s, w = trial;
+  };
+  // The cell at X holds the simplex, unless X lies outside: then look further out.
+  look_around(X, try_simplex, [&](int) { return best_least > -1e300; });
   return best;
 }
 
 void ParticleField::expand(std::span<const Vec3> X, std::span<Vec3> u,
                            std::span<Mat3> gradient) const {
   for (std::size_t q = 0; q < X.size(); ++q) {
-    std::size_t a = 0;
-    for (std::size_t b = 1; b < m_X.size(); ++b) {
-      if ((X[q] - m_X[b]).squaredNorm() < (X[q] - m_X[a]).squaredNorm()) a = b;
-    }
+    Index a = -1;
+    double nearest = 1e300;  // squared
+    look_around(
+        X[q],
+        [&](Index b) {
+          const double d = (X[q] - m_X[b]).squaredNorm();
+          if (d < nearest || (d == nearest && b < a)) nearest = d, a = b;
+        },
+        // What is beyond a ring is at least its width away.
+        [&](int ring) { return nearest < ring * m_cell * ring * m_cell; });
     u[q] = m_u[a] + m_H[a] * (X[q] - m_X[a]);
     if (!gradient.empty()) gradient[q] = m_H[a];
   }

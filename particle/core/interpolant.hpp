@@ -15,9 +15,11 @@ namespace concord::particle {
 /// adds no second-order error where they are accurate. The gradient is that of this function.
 ///
 /// Where particles lie inside the body, the simplices end half a spacing before its faces.
-/// There the function of the simplex that X lies least outside of goes on: the same algebra, so
-/// that quadratic fields are still reproduced. Particles in one layer have no simplices: then
-/// u(X) is the first-order expansion of the nearest particle.
+/// There the function of a simplex near by goes on: of those whose box touches the cell of a
+/// grid of spacing h at X (or the nearest cells that any touches), the one that X lies least
+/// outside of. It is the same algebra, so that quadratic fields are still reproduced. Particles
+/// in one layer have no simplices: then u(X) is the first-order expansion of the nearest
+/// particle.
 class ParticleField final : public scene::Field {
  public:
   /// Takes the body's simplices: they are gone from it afterwards. X, u, H: one a particle.
@@ -27,6 +29,8 @@ class ParticleField final : public scene::Field {
 
  private:
   void expand(std::span<const Vec3> X, std::span<Vec3> u, std::span<Mat3> gradient) const;
+  template <class Search, class Enough>
+  void look_around(const Vec3& X, const Search& search, const Enough& enough) const;
   std::size_t locate(const Vec3& X, std::array<double, 4>& w) const;
   void weights(std::size_t simplex, const Vec3& X, std::array<double, 4>& w) const;
 
@@ -37,7 +41,8 @@ class ParticleField final : public scene::Field {
   Vec3 m_low;
   double m_cell;
   std::array<int, 3> m_cells{1, 1, 1};
-  std::vector<Index> m_begin, m_inside;  ///< simplices whose box touches a grid cell
+  std::vector<Index> m_begin,
+      m_inside;  ///< simplices whose box touches a grid cell, or particles
 };
 
 }  // namespace concord::particle

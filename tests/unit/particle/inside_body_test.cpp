@@ -339,6 +339,33 @@ TEST(InsideField, OfOneLayerIsTheExpansionOfTheNearestParticle) {
   EXPECT_EQ(slope[0], H);
 }
 
+/// The grid finds what a search through all particles finds, from points outside too.
+TEST(InsideField, OfOneLayerFindsTheNearestOfManyParticles) {
+  Body body;
+  body.h = 0.1;
+  std::vector<Vec3> X, u;
+  for (std::uint64_t a = 0; a < 150; ++a) {
+    const auto random = [&](std::uint64_t i) { return scene::uniform_random(7, a, i); };
+    X.emplace_back(random(0), random(1) * random(1), 0.05);
+    u.emplace_back(static_cast<double>(a), 0, 0);
+  }
+  const ParticleField field(body, X, u, std::vector<Mat3>(X.size(), Mat3::Zero()));
+  std::vector<Vec3> at;
+  for (std::uint64_t q = 0; q < 400; ++q) {
+    const auto random = [&](std::uint64_t i) { return scene::uniform_random(8, q, i); };
+    at.emplace_back(2 * random(0) - 0.5, 3 * random(1) - 1, 0.3 * random(2) - 0.1);
+  }
+  std::vector<Vec3> found(at.size());
+  field.evaluate(at, found, {});
+  for (std::size_t q = 0; q < at.size(); ++q) {
+    const auto nearest =
+        std::min_element(X.begin(), X.end(), [&](const Vec3& a, const Vec3& b) {
+          return (at[q] - a).squaredNorm() < (at[q] - b).squaredNorm();
+        });
+    EXPECT_EQ(found[q][0], static_cast<double>(nearest - X.begin())) << q;
+  }
+}
+
 /// An L of three unit squares, two by two particles each: no simplex joins the legs across the
 /// notch, and the rest is the L through the outermost particles.
 TEST(InsideBody, TriangulationDoesNotCrossANotch) {
