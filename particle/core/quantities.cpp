@@ -152,6 +152,7 @@ Vec3 Quantities::vector_value(const Place& place, const State& state,
 }
 
 /// u at the centroid of a piece: what is prescribed there, the expansion of its particle else.
+/// Tractions do work on the formulation's own u there, (VOR.13), which differs by its error.
 Vec3 Quantities::at_face(const SurfacePiece& piece, const State& state,
                          std::span<const Mat3> H) const {
   const Body& body = m_model.body();
