@@ -39,28 +39,83 @@ MatrixXd kernel_matrix(const Star& star) {
   return rest.transpose() * rest;
 }
 
-/// The system with given bases of free components: T and R by (VOR.6); false if undetermined.
-bool solve(const Star& star, const MatrixXd& K, const std::vector<MatrixXd>& Q,
-           GhostSystem& system) {
+/// Matrix A of the free components with given bases, and where those of each ghost begin.
+struct Free {
+  std::vector<MatrixXd> Q;
+  std::vector<Eigen::Index> first;
+  MatrixXd A;
+
+  Free(const Star& star, const MatrixXd& K, const std::vector<bool>& mirrored)
+      : first(star.ghosts.size() + 1, 0) {
+    const std::size_t ghosts = star.ghosts.size();
+    const auto real = static_cast<Eigen::Index>(star.neighbours.size());
+    for (std::size_t g = 0; g < ghosts; ++g) {
+      Q.push_back(mirrored[g] ? MatrixXd(3, 0) : basis_of(star.ghosts[g].free));
+      first[g + 1] = first[g] + Q[g].cols();
+    }
+    A.resize(size(), size());
+    for (std::size_t g = 0; g < ghosts; ++g) {
+      for (std::size_t h = 0; h < ghosts; ++h)
+        A.block(first[g], first[h], Q[g].cols(), Q[h].cols()) =
+            K(real + static_cast<Eigen::Index>(g), real + static_cast<Eigen::Index>(h)) *
+            Q[g].transpose() * Q[h];
+    }
+  }
+  Eigen::Index size() const { return first.back(); }
+};
+
+/// Among the ghosts that may become mirror images, those behind the plane that takes the
+/// largest part in a motion of the free components, and behind planes parallel to it. False if
+/// there are none.
+bool mirror_most(const Star& star, const Free& free, const Eigen::VectorXd& motion,
+                 std::vector<bool>& mirrored) {
+  const std::size_t ghosts = star.ghosts.size();
+  const auto may = [&](std::size_t g) { return star.ghosts[g].mirror && !mirrored[g]; };
+  const auto parallel = [&](std::size_t g, std::size_t h) {
+    return star.ghosts[g].N.cross(star.ghosts[h].N).norm() < 1e-9;
+  };
+  std::size_t most = ghosts;
+  double largest = -1;
+  for (std::size_t g = 0; g < ghosts; ++g) {
+    if (!may(g)) continue;
+    double part = 0;
+    for (std::size_t h = 0; h < ghosts; ++h) {
+      if (may(h) && parallel(g, h))
+        part += motion.segment(free.first[h], free.Q[h].cols()).squaredNorm();
+    }
+    if (part > largest) largest = part, most = g;
+  }
+  if (most == ghosts) return false;
+  for (std::size_t h = 0; h < ghosts; ++h) {
+    if (h == most || (may(h) && parallel(most, h))) mirrored[h] = true;
+  }
+  return true;
+}
+
+/// Ghosts that are mirror images whatever the neighbours: those of a layer of one particle
+/// between two parallel planes of symmetry.
+std::vector<bool> between_planes(const Star& star) {
+  std::vector<bool> between(star.ghosts.size(), false);
+  for (std::size_t g = 0; g < star.ghosts.size(); ++g) {
+    for (std::size_t h = 0; h < star.ghosts.size(); ++h) {
+      if (star.ghosts[g].mirror && star.ghosts[h].mirror &&
+          (star.ghosts[g].N + star.ghosts[h].N).norm() < 1e-9)
+        between[g] = true;
+    }
+  }
+  return between;
+}
+
+/// T and R by (VOR.6).
+void fill(const Star& star, const MatrixXd& K, const Free& free, GhostSystem& system) {
   const std::size_t real = star.neighbours.size(), ghosts = star.ghosts.size();
-  std::vector<Eigen::Index> first(ghosts + 1, 0);
-  for (std::size_t g = 0; g < ghosts; ++g) first[g + 1] = first[g] + Q[g].cols();
-  const Eigen::Index size = first[ghosts];
+  const auto& [Q, first, A] = free;
+  const Eigen::Index size = free.size();
   system.T.assign(ghosts * real, Mat3::Zero());
   system.R.assign(ghosts * ghosts, Mat3::Zero());
   for (std::size_t g = 0; g < ghosts; ++g) system.R[g * ghosts + g] = 2 * star.ghosts[g].D;
-  if (size == 0) return true;
+  if (size == 0) return;
   const auto at = [&](std::size_t g) { return static_cast<Eigen::Index>(real + g); };
-  MatrixXd A(size, size);
-  for (std::size_t g = 0; g < ghosts; ++g) {
-    for (std::size_t h = 0; h < ghosts; ++h) {
-      A.block(first[g], first[h], Q[g].cols(), Q[h].cols()) =
-          K(at(g), at(h)) * Q[g].transpose() * Q[h];
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(A);
-  const double largest = std::max(1.0, eigen.eigenvalues()[size - 1]);
-  if (!(eigen.eigenvalues()[0] >= 1e-8 * largest)) return false;
   const MatrixXd Z = A.ldlt().solve(MatrixXd::Identity(size, size));
   for (std::size_t g = 0; g < ghosts; ++g) {
     for (std::size_t h = 0; h < ghosts; ++h) {
@@ -72,7 +127,6 @@ bool solve(const Star& star, const MatrixXd& K, const std::vector<MatrixXd>& Q,
         system.R[g * ghosts + k] -= 2 * K(at(h), at(k)) * QZQ * star.ghosts[k].D;
     }
   }
-  return true;
 }
 
 }  // namespace
@@ -139,16 +193,21 @@ Star Stars::operator()(Index a) const {
 
 GhostSystem solve_ghosts(const Star& star) {
   const MatrixXd K = kernel_matrix(star);
-  std::vector<MatrixXd> Q;
-  for (const Ghost& ghost : star.ghosts) Q.push_back(basis_of(ghost.free));
   GhostSystem system;
-  if (solve(star, K, Q, system)) return system;
-  system.mirrored = true;
-  for (std::size_t g = 0; g < star.ghosts.size(); ++g) {
-    if (star.ghosts[g].mirror) Q[g].resize(3, 0);
+  system.mirrored = between_planes(star);
+  while (true) {
+    const Free free(star, K, system.mirrored);
+    system.condition = 1;
+    if (free.size() > 0) {
+      const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(free.A);
+      system.condition = eigen.eigenvalues()[0] / eigen.eigenvalues()[free.size() - 1];
+      if (!system.determined() &&
+          mirror_most(star, free, eigen.eigenvectors().col(0), system.mirrored))
+        continue;
+    }
+    if (system.determined()) fill(star, K, free, system);
+    return system;
   }
-  system.determined = solve(star, K, Q, system);
-  return system;
 }
 
 GhostSystems solve_all_ghosts(const Stars& stars, const SourcePosition& where,
@@ -166,16 +225,20 @@ GhostSystems solve_all_ghosts(const Stars& stars, const SourcePosition& where,
       all.system[k] = solve_ghosts(stars(all.particle[k]));
   });
   for (std::size_t k = 0; k < all.particle.size(); ++k) {
-    if (all.system[k].determined) continue;
+    if (all.system[k].determined()) continue;
     const Vec3 X = stars.body().position(all.particle[k]);
     throw InputError(
         where, "geometry",
-        fmt::format("particle {} at ({:.4g}, {:.4g}, {:.4g}) m with too few "
-                    "neighbours: they and the prescribed faces of its cell do not "
-                    "span the space in which its ghosts move",
-                    all.particle[k], X[0], X[1], X[2]),
-        "at least two layers of particles between free faces (a finer resolution), "
-        "or planes of symmetry on both sides of one layer");
+        fmt::format("particle {} at ({:.4g}, {:.4g}, {:.4g}) m whose ghosts are undetermined: "
+                    "its neighbours and the prescribed faces of its cell do not span the space "
+                    "in which they move (condition {:.1e})",
+                    all.particle[k], X[0], X[1], X[2], all.system[k].condition),
+        fmt::format(
+            "conditions from {:g} on: two layers of particles between free faces (a "
+            "finer resolution), planes of symmetry on both sides of one layer; at acute "
+            "corners, where no resolution helps, displacements on one of the two faces "
+            "or an end as wide as two particles",
+            least_condition));
   }
   return all;
 }

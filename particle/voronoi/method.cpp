@@ -39,6 +39,8 @@ scene::MethodInfo method_info() {
       {{"conditions on points and edges",
         "particles lie inside the body: displacements act through faces, or on the whole body"},
        {"curved faces", "ghosts are mirror images behind plane walls"},
+       {"one layer between free faces, acute corners between free faces",
+        "the neighbours of a cell there do not say where its ghosts move"},
        {"potential (force=conserving)", "(43) treats prescribed positions as constants and "
                                         "leaves the reaction D P A out of the "
                                         "potential: a gradient only where all faces are free"},
