@@ -48,8 +48,8 @@ struct Block {
   Body body;
 
   Block(const std::string& scene, double h, const std::vector<Vec3>& X,
-        const std::vector<Given>& given)
-      : problem(scene::read_problem(scene)) {
+        const std::vector<Given>& given, const std::vector<scene::Override>& overrides = {})
+      : problem(scene::read_problem(scene, overrides)) {
     problem.boundaries.clear();
     for (const Given& g : given) {
       scene::BoundaryCondition bc;

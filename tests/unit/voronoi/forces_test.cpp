@@ -195,17 +195,49 @@ TEST(VoronoiKernels, ThreadsDoNotChangeABit) {
   }
 }
 
-/// Artificial viscosity takes energy, and nothing from rigid motion.
-TEST(VoronoiKernels, ViscosityTakesEnergy) {
+/// Where displacements and velocities are affine, P is the same in all cells and
+/// sum V_a P_a : dF/dt is the power of the viscous stress (51)
+///   J sigma F^-T,  sigma = (rho c1 c_p h + rho c2 h^2 |tr d|) d,  rho J = rho0,
+/// with h the shortest branch vector and c_p the speed of longitudinal waves.
+TEST(VoronoiKernels, ViscousPowerOfAffineMotionIsThatOfThePaper) {
+  Mat3 H, L;
+  H << 0.2, 0.1, -0.1, 0.05, -0.1, 0.15, 0.1, -0.1, 0.15;
+  L << 3, -1, 2, 1, 2, -2, -3, 1, 4;
+  for (const int dim : {2, 3}) {
+    const Block block = dim == 3 ? cube(4, {}) : membrane(5, {});
+    if (dim == 2) {
+      H.row(2).setZero(), H.col(2).setZero();
+      L.row(2).setZero(), L.col(2).setZero();
+    }
+    const scene::Material& m = block.problem.material;
+    const Mat3 F = Mat3::Identity() + H, inverse = F.inverse();
+    const Mat3 l = L * inverse, d = 0.5 * (l + l.transpose());
+    const double c_p = std::sqrt((m.lambda + 2 * m.mu) / m.rho0), h = block.body.h_min;
+    double volume = 0;
+    for (Index a = 0; a < block.body.bulk; ++a) volume += block.body.V[a];
+    const Column u = block.affine(H), v = block.affine(L);
+    const auto inviscid = block.model();
+    const Column elastic = block.force(*inviscid, u);
+    for (const auto& [c1, c2] : {std::pair{0.1, 0.0}, {0.0, 0.3}, {0.2, 0.1}}) {
+      const auto model = block.model({1, 1, c1, c2});
+      Column f(u.size(), 0.0);
+      model->forces(u, v, f, Executor(1));
+      double power = 0;
+      for (std::size_t k = 0; k < u.size(); ++k) power -= (f[k] - elastic[k]) * v[k];
+      const double factor = m.rho0 * c1 * c_p * h + m.rho0 * c2 * h * h * std::abs(d.trace());
+      const double expected = volume * factor * d.squaredNorm();
+      EXPECT_NEAR(power, expected, 1e-10 * expected) << dim << " " << c1 << " " << c2;
+      EXPECT_GT(expected, 0);
+    }
+  }
+}
+
+/// Rigid motion has no viscous force.
+TEST(VoronoiKernels, ViscosityDoesNotFeelSpin) {
   const Block block = cube(4, {});
   const auto model = block.model({1, 1, 0.1, 0.1}), inviscid = block.model();
-  const Column u = block.random_displacement(), v = block.random_displacement(1.0, 9);
-  Column f(u.size(), 0.0);
-  model->forces(u, v, f, Executor(1));
+  const Column u = block.random_displacement();
   const Column elastic = block.force(*inviscid, u);
-  double power = 0;
-  for (std::size_t k = 0; k < u.size(); ++k) power += (f[k] - elastic[k]) * v[k];
-  EXPECT_LT(power, 0);
   Mat3 W;
   W << 0, 1, -2, -1, 0, 3, 2, -3, 0;
   const Column spin = block.column(
@@ -216,6 +248,58 @@ TEST(VoronoiKernels, ViscosityTakesEnergy) {
   for (std::size_t k = 0; k < u.size(); ++k)
     difference = std::max(difference, std::abs(g[k] - elastic[k]));
   EXPECT_LT(difference, 1e-13 * norm(elastic));
+}
+
+/// Loads are conjugate to the place where they act: their power is A T . u(C) on every loaded
+/// face, u(C) of (VOR.13) from H^V and the ghosts, for any displacement of particles and
+/// boundary points.
+TEST(VoronoiLoads, DoTheWorkOfTheFacesCentroids) {
+  for (const bool flat : {false, true}) {
+    const Block block = flat ? membrane(5, {{"left"}, {"right", scene::BoundaryKind::traction}})
+                             : cube(4, mixed());
+    const auto model = block.model();
+    const Vec3 load = flat ? Vec3(2, -3, 0) : Vec3(2, -3, 5);
+    const Stars stars(block.body, block.cells, block.boundary);
+    const GhostSystems ghosts = solve_all_ghosts(stars, {}, Executor(1));
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Column u = random_direction(block, seed);
+      Column f(u.size(), 0.0);
+      block.add_loads(
+          *model, [&](const Vec3&) { return load; }, f);
+      double work = 0, expected = 0, scale = 0;
+      for (std::size_t k = 0; k < u.size(); ++k) work += f[k] * u[k];
+      for (Index a = 0; a < block.body.bulk; ++a) {
+        // H^V_a and the places of the ghosts, summed up here.
+        const Star star = stars(a);
+        const Vec3 u_a = block.at(u, a);
+        const std::size_t real = star.neighbours.size(), walls = star.ghosts.size();
+        Mat3 mean = Mat3::Zero();
+        for (const Neighbour& c : star.neighbours)
+          mean += (block.at(u, c.b) - u_a) * c.gradient_vector().transpose() / star.V;
+        std::vector<Vec3> branch(walls, Vec3::Zero());
+        for (std::size_t g = 0; g < walls; ++g) {
+          const GhostSystem& system = ghosts.system[ghosts.row[a]];
+          for (std::size_t c = 0; c < real; ++c)
+            branch[g] += system.T[g * real + c] * (block.at(u, star.neighbours[c].b) - u_a);
+          for (std::size_t h = 0; h < walls; ++h) {
+            if (star.ghosts[h].wall_point >= 0)
+              branch[g] +=
+                  system.R[g * walls + h] * (block.at(u, star.ghosts[h].wall_point) - u_a);
+          }
+          mean += branch[g] * star.ghosts[g].gradient_vector().transpose() / star.V;
+        }
+        for (std::size_t g = 0; g < walls; ++g) {
+          const Ghost& ghost = star.ghosts[g];
+          if (block.boundary.pieces[ghost.piece].tractions.empty()) continue;
+          const Vec3 place = ghost.free * (u_a + 0.5 * branch[g] + mean * ghost.t);
+          expected += ghost.A * load.dot(place);
+          scale += ghost.A * load.norm() * place.norm();
+        }
+      }
+      EXPECT_GT(scale, 0);
+      EXPECT_NEAR(work, expected, 1e-13 * scale);
+    }
+  }
 }
 
 }  // namespace

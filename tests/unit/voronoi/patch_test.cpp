@@ -67,6 +67,12 @@ TEST_P(PatchTests, TheFaceCompatibleFormPassesAllThree) {
   }
 }
 
+/// The paper's size, 10^3.
+TEST(PatchTestsOfThePaper, HoldAtTheSizeOfThePaper) {
+  EXPECT_LE(Patch(10, 1, on_all_faces(displacement)).unbalanced({}), 1e-9);
+  EXPECT_LE(Patch(10, 1, loaded()).unbalanced({}), 1e-9);
+}
+
 TEST(PaperForms, TheStaticOnePassesAllThree) {
   const Parameters form{1, 1, 0, 0, Form::quasi_static};
   EXPECT_LE(Patch(3, 1, on_all_faces(displacement)).unbalanced(form), 1e-9);
