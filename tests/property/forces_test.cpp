@@ -91,14 +91,12 @@ TEST_P(EveryMethod, ForcesHaveNoResultantAndNoMoment) {
 
 TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
   Bench b(GetParam(), "spinning_block", 4);
-  if (!b.model->has_potential()) {
-    // The declared failure: the stabilisation force does work that no energy accounts for.
-    EXPECT_TRUE(declares(GetParam(), "potential"));
-    return;
-  }
+  const bool potential = b.model->has_potential();
+  EXPECT_TRUE(potential || declares(GetParam(), "potential"));
   const Column u = b.random_displacement();
   const Column f = b.force(u);
   const double largest = norm(f);
+  double worst = 0;
   std::mt19937_64 generator(11);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int trial = 0; trial < 8; ++trial) {
@@ -117,8 +115,12 @@ TEST_P(EveryMethod, ForceIsMinusTheGradientOfTheEnergy) {
     const double s = 1e-4 * b.body.h;
     const double slope =
         (8 * (energy(s) - energy(-s)) - (energy(2 * s) - energy(-2 * s))) / (12 * s);
-    EXPECT_NEAR(slope, power, 1e-9 * largest * norm(d));
+    worst = std::max(worst, std::abs(slope - power) / (largest * norm(d)));
   }
+  if (potential)
+    EXPECT_LT(worst, 1e-9);
+  else  // work that no energy accounts for
+    EXPECT_GT(worst, 1e-6) << "declared failure did not happen";
 }
 
 TEST_P(EveryMethod, TangentIsTheDerivativeOfTheForce) {
