@@ -339,30 +339,24 @@ TEST(InsideField, OfOneLayerIsTheExpansionOfTheNearestParticle) {
   EXPECT_EQ(slope[0], H);
 }
 
-/// The grid finds what a search through all particles finds, from points outside too.
 TEST(InsideField, OfOneLayerFindsTheNearestOfManyParticles) {
+  using scene::uniform_random;
   Body body;
   body.h = 0.1;
-  std::vector<Vec3> X, u;
+  std::vector<Vec3> X, u, at, found(400);
   for (std::uint64_t a = 0; a < 150; ++a) {
-    const auto random = [&](std::uint64_t i) { return scene::uniform_random(7, a, i); };
-    X.emplace_back(random(0), random(1) * random(1), 0.05);
+    X.emplace_back(uniform_random(7, a, 0), std::pow(uniform_random(7, a, 1), 2), 0.05);
     u.emplace_back(static_cast<double>(a), 0, 0);
   }
   const ParticleField field(body, X, u, std::vector<Mat3>(X.size(), Mat3::Zero()));
-  std::vector<Vec3> at;
-  for (std::uint64_t q = 0; q < 400; ++q) {
-    const auto random = [&](std::uint64_t i) { return scene::uniform_random(8, q, i); };
-    at.emplace_back(2 * random(0) - 0.5, 3 * random(1) - 1, 0.3 * random(2) - 0.1);
-  }
-  std::vector<Vec3> found(at.size());
+  for (std::uint64_t q = 0; q < found.size(); ++q)
+    at.emplace_back(2 * uniform_random(8, q, 0) - 0.5, 3 * uniform_random(8, q, 1) - 1, 0.2);
   field.evaluate(at, found, {});
   for (std::size_t q = 0; q < at.size(); ++q) {
-    const auto nearest =
-        std::min_element(X.begin(), X.end(), [&](const Vec3& a, const Vec3& b) {
-          return (at[q] - a).squaredNorm() < (at[q] - b).squaredNorm();
-        });
-    EXPECT_EQ(found[q][0], static_cast<double>(nearest - X.begin())) << q;
+    std::size_t nearest = 0;
+    for (std::size_t a = 1; a < X.size(); ++a)
+      if ((at[q] - X[a]).norm() < (at[q] - X[nearest]).norm()) nearest = a;
+    EXPECT_EQ(found[q][0], u[nearest][0]) << q;
   }
 }
 
