@@ -57,14 +57,24 @@ Rows<3> ghost_rows(const Star& star, const GhostSystem& system, std::size_t g) {
   return rows;
 }
 
-/// H^V_a = 1/V_a [ sum_b u_ab (x) B_ab + sum_g u_ag (x) B_ag ] (6), (26).
-Rows<9> mean_gradient(const Star& star, const GhostSystem& system) {
+namespace {
+
+/// 1/V_a sum_b u_ab (x) B_ab over real neighbours.
+Rows<9> neighbour_gradient(const Star& star) {
   Rows<9> rows;
   for (const Neighbour& ab : star.neighbours) {
     const Rows<9>::Block block = outer(Mat3::Identity(), ab.gradient_vector() / star.V);
     rows.add(ab.b, block);
     rows.add(star.a, -block);
   }
+  return rows;
+}
+
+}  // namespace
+
+/// H^V_a = 1/V_a [ sum_b u_ab (x) B_ab + sum_g u_ag (x) B_ag ] (6), (26).
+Rows<9> mean_gradient(const Star& star, const GhostSystem& system) {
+  Rows<9> rows = neighbour_gradient(star);
   for (std::size_t g = 0; g < star.ghosts.size(); ++g) {
     const Rows<3> ghost = ghost_rows(star, system, g);
     const Vec3 B = star.ghosts[g].gradient_vector() / star.V;
@@ -77,12 +87,7 @@ Rows<9> mean_gradient(const Star& star, const GhostSystem& system) {
 
 /// The derivative of H^V_a as the paper's forces take it: prescribed parts of ghosts held (43).
 Rows<9> mean_gradient_test(const Star& star, const GhostSystem& system) {
-  Rows<9> rows;
-  for (const Neighbour& ab : star.neighbours) {
-    const Rows<9>::Block block = outer(Mat3::Identity(), ab.gradient_vector() / star.V);
-    rows.add(ab.b, block);
-    rows.add(star.a, -block);
-  }
+  Rows<9> rows = neighbour_gradient(star);
   const std::size_t real = star.neighbours.size();
   for (std::size_t g = 0; g < star.ghosts.size(); ++g) {
     const Vec3 B = star.ghosts[g].gradient_vector() / star.V;
@@ -98,16 +103,8 @@ Rows<9> mean_gradient_test(const Star& star, const GhostSystem& system) {
 /// Internal forces of the paper's forms: static (42), conserving (43), both with the reaction
 /// D P A of prescribed faces.
 Rows<9> paper_test(const Star& star, const GhostSystem& system, Form form) {
-  Rows<9> rows;
-  if (form == Form::conserving) {
-    rows = mean_gradient_test(star, system);
-  } else {
-    for (const Neighbour& ab : star.neighbours) {
-      const Rows<9>::Block block = outer(Mat3::Identity(), ab.gradient_vector() / star.V);
-      rows.add(ab.b, block);
-      rows.add(star.a, -block);
-    }
-  }
+  Rows<9> rows =
+      form == Form::conserving ? mean_gradient_test(star, system) : neighbour_gradient(star);
   for (const Ghost& ghost : star.ghosts) {
     if (ghost.centroid_point < 0) continue;
     const Rows<9>::Block block = outer(ghost.D, ghost.A / star.V * ghost.N);
