@@ -9,22 +9,6 @@
 namespace concord::scene {
 namespace {
 
-/// HDF5 prints its errors unless told not to; here they become exceptions.
-class QuietHdf5 {
- public:
-  QuietHdf5() {
-    H5Eget_auto2(H5E_DEFAULT, &m_function, &m_data);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, m_function, m_data); }
-  QuietHdf5(const QuietHdf5&) = delete;
-  QuietHdf5& operator=(const QuietHdf5&) = delete;
-
- private:
-  H5E_auto2_t m_function = nullptr;
-  void* m_data = nullptr;
-};
-
 /// Values of a dataset and its second extent (1 where it has one dimension).
 template <class T> struct Dataset {
   std::vector<T> values;

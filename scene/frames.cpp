@@ -1,8 +1,8 @@
 // VTKHDF 1.0 frames. Format: VTK file formats, "VTKHDF File Format", UnstructuredGrid.
 
 #include "scene/build_info.hpp"
+#include "scene/continued_output.hpp"
 #include "scene/hdf5_handle.hpp"
-#include "scene/output.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -134,15 +134,70 @@ void write_frame(const std::filesystem::path& file, double time, std::span<const
                  std::span<const Index> connectivity, std::span<const Index> offsets,
                  std::span<const unsigned char> types) {
   const std::filesystem::path temporary = file.string() + ".part";
-  {
-    const Hdf5Handle handle(
-        H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-        "create " + temporary.string());
-    write_grid(handle, points, point_fields,
-               cells_of(points.size(), connectivity, offsets, types));
-    write_provenance(handle, time);
+  try {
+    writing(file, [&] {
+      const QuietHdf5 quiet;
+      const Hdf5Handle handle(
+          H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
+          "create " + temporary.string());
+      write_grid(handle, points, point_fields,
+                 cells_of(points.size(), connectivity, offsets, types));
+      write_provenance(handle, time);
+      // Closing does not tell when the disk is full.
+      hdf5_check(H5Fflush(handle, H5F_SCOPE_GLOBAL), "write " + temporary.string());
+    });
+    std::filesystem::rename(temporary, file);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
   }
-  std::filesystem::rename(temporary, file);
+}
+
+namespace {
+
+void write_series(const std::filesystem::path& folder, const FrameList& frames) {
+  nlohmann::ordered_json series;
+  series["file-series-version"] = "1.0";
+  series["files"] = nlohmann::json::array();
+  for (const auto& [frame, at] : frames)
+    series["files"].push_back({{"name", frame}, {"time", at}});
+  write_file(folder / "fields.hdf.series", series.dump(2) + "\n");
+}
+
+std::string frame_name(std::size_t number) { return fmt::format("fields_{:04d}.hdf", number); }
+
+}  // namespace
+
+void add_frame(const std::filesystem::path& folder, FrameList& frames, double time,
+               std::span<const Vec3> points, const std::vector<FrameField>& point_fields,
+               std::span<const Index> connectivity, std::span<const Index> offsets,
+               std::span<const unsigned char> types) {
+  const std::string name = frame_name(frames.size());
+  write_frame(folder / name, time, points, point_fields, connectivity, offsets, types);
+  frames.emplace_back(name, time);
+  try {
+    write_series(folder, frames);
+  } catch (...) {
+    frames.pop_back();
+    throw;
+  }
+}
+
+FrameList keep_frames(const std::filesystem::path& folder, std::span<const double> times) {
+  FrameList frames;
+  for (const double time : times) {
+    frames.emplace_back(frame_name(frames.size()), time);
+    const std::filesystem::path file = folder / frames.back().first;
+    if (!std::filesystem::is_regular_file(file))
+      throw InputError({file.string()}, "frame", "nothing",
+                       "the frames that were written before the checkpoint");
+  }
+  write_series(folder, frames);
+  for (std::size_t later = times.size(); std::filesystem::remove(folder / frame_name(later));
+       ++later) {
+  }
+  return frames;
 }
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder) : m_folder(folder) {
@@ -154,15 +209,7 @@ void FrameWriter::write(double time, std::span<const Vec3> points,
                         std::span<const Index> connectivity, std::span<const Index> offsets,
                         std::span<const unsigned char> types) {
   if (!active()) return;
-  const std::string name = fmt::format("fields_{:04d}.hdf", m_series.size());
-  write_frame(m_folder / name, time, points, point_fields, connectivity, offsets, types);
-  m_series.emplace_back(name, time);
-  nlohmann::ordered_json series;
-  series["file-series-version"] = "1.0";
-  series["files"] = nlohmann::json::array();
-  for (const auto& [frame, at] : m_series)
-    series["files"].push_back({{"name", frame}, {"time", at}});
-  write_file(m_folder / "fields.hdf.series", series.dump(2) + "\n");
+  add_frame(m_folder, m_series, time, points, point_fields, connectivity, offsets, types);
 }
 
 }  // namespace concord::scene

@@ -32,6 +32,23 @@ class Hdf5Handle {
   herr_t (*m_close)(hid_t);
 };
 
+/// HDF5 prints its errors unless told not to; while one of these lives, they become exceptions
+/// alone.
+class QuietHdf5 {
+ public:
+  QuietHdf5() {
+    H5Eget_auto2(H5E_DEFAULT, &m_function, &m_data);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~QuietHdf5() { H5Eset_auto2(H5E_DEFAULT, m_function, m_data); }
+  QuietHdf5(const QuietHdf5&) = delete;
+  QuietHdf5& operator=(const QuietHdf5&) = delete;
+
+ private:
+  H5E_auto2_t m_function = nullptr;
+  void* m_data = nullptr;
+};
+
 /// Throws std::runtime_error when an HDF5 call failed.
 inline void hdf5_check(herr_t status, const std::string& what) {
   if (status < 0) throw std::runtime_error("HDF5 cannot " + what);

@@ -22,6 +22,7 @@ extern "C" void on_interrupt(int signal) {
 void install_interrupt_handlers() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes fails the write, like a full disk
 }
 
 bool interrupted() noexcept { return g_interrupted != 0; }

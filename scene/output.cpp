@@ -1,6 +1,6 @@
 // history.csv, and files that are never half written.
 
-#include "scene/output.hpp"
+#include "scene/continued_output.hpp"
 
 #include <cassert>
 #include <cstdio>
@@ -28,11 +28,17 @@ void HistoryWriter::append(std::span<const double> row) {
 void write_file(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
   const std::filesystem::path temporary = file.string() + ".part";
-  {
-    std::ofstream stream;
-    stream.exceptions(std::ios::badbit | std::ios::failbit);
-    stream.open(temporary, std::ios::binary | std::ios::trunc);
-    stream << text;
+  try {
+    writing(file, [&] {
+      std::ofstream stream;
+      stream.exceptions(std::ios::badbit | std::ios::failbit);
+      stream.open(temporary, std::ios::binary | std::ios::trunc);
+      stream << text << std::flush;
+    });
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
   }
   std::filesystem::rename(temporary, file);
 }

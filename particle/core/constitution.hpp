@@ -42,6 +42,10 @@ class Constitution {
   void commit() {
     if (m_history) m_history->commit();
   }
+  /// The histories, saved or restored.
+  void keep(scene::Checkpoint& state) {
+    if (m_history) m_history->keep(state);
+  }
 
  private:
   std::optional<scene::ElasticLaw> m_law;

@@ -15,6 +15,10 @@
 #include <string>
 #include <vector>
 
+namespace concord::scene {
+class Checkpoint;
+}
+
 namespace concord::particle {
 
 /// A kernel met a state it cannot go on from. The caller adds step and time.
@@ -37,8 +41,8 @@ struct Energies {
       0;  ///< contact energy (15) or penalty energy; 0 where the stabilisation has no potential
 };
 
-/// What a nominal traction on one piece of the surface adds to the force on one point: M T(X, t)
-/// [N]. For formulations whose particles lie inside the body.
+/// What a nominal traction on one piece of the surface adds to the force on one point: M T(X,
+/// t) [N]. For formulations whose particles lie inside the body.
 struct LoadTerm {
   Index point;            ///< particle or boundary point
   Index condition;        ///< of the traction, index into Problem::boundaries
@@ -64,6 +68,12 @@ class ForceModel {
   /// Takes the material state of the last forces() as the start of later evaluations, which all
   /// begin from the last state taken: to be called once for every accepted step.
   void commit() { m_constitution.commit(); }
+
+  /// Saves or restores all that later forces depend on beside u and v, so that they have the
+  /// same bits: here the material's history. A model that keeps more from step to step (what
+  /// has broken, forces of the last step) overrides this, calls this one, and adds its items;
+  /// one that is restored has been constructed in the same way as the one that was saved.
+  virtual void keep(scene::Checkpoint& state);
 
   /// While held, plastic flow is off: forces respond elastically from the last state taken.
   void hold_flow(bool on) { m_constitution.hold(on); }

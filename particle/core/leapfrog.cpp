@@ -131,95 +131,10 @@ void Leapfrog::drift(double dt) {
   }
 }
 
-double Leapfrog::critical_step(double dt_factor) {
-  SpectralRadius spectrum(m_model, m_constraints, m_executor);
-  const double omega = spectrum.omega_max(m_u);
-  if (!(omega > 0)) return m_problem.end_time;
-  const double zeta = m_model.viscous_damping_ratio(omega);
-  return dt_factor * 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
-}
-
-double Leapfrog::largest_gradient() {
-  const Body& body = m_model.body();
-  if (body.inside()) {  // simplices do not see what happens between particles and faces
-    m_H.resize(body.bulk);
-    m_model.gradients(m_u, m_H);
-    double largest = 0;
-    for (const Mat3& H : m_H) largest = std::max(largest, H.squaredNorm());
-    return std::sqrt(largest);
-  }
-  // A bound that needs no tensors: the largest relative displacement over a bond of the
-  // triangulation.
-  const Triangulation& t = body.triangulation;
-  const int nv = t.dim + 1;
-  double largest = 0;
-  for (std::size_t s = 0; s < t.size(); ++s) {
-    const Index* v = &t.simplices[s * nv];
-    for (int k = 1; k < nv; ++k) {
-      double du = 0, dX = 0;
-      for (int i = 0; i < t.dim; ++i) {
-        const std::size_t p = static_cast<std::size_t>(v[k]) * body.stride + i,
-                          q = static_cast<std::size_t>(v[0]) * body.stride + i;
-        du += (m_u[p] - m_u[q]) * (m_u[p] - m_u[q]);
-        dX += (body.X[p] - body.X[q]) * (body.X[p] - body.X[q]);
-      }
-      largest = std::max(largest, du / dX);
-    }
-  }
-  return std::sqrt(largest);
-}
-
-State Leapfrog::state() {
-  const Body& body = m_model.body();
-  // A kick of half a step: (v_n - v) / (dt/2) = f/m - c (v + v_n)/2, v at the half step before.
-  const double share = 1 / (1 + 0.25 * m_damping * m_dt_last);
-  m_v_full = m_v;
-  m_acceleration.assign(m_f.size(), 0.0);
-  for (Index a = 0; a < body.n; ++a) {
-    for (int i = 0; i < body.dim; ++i) {
-      const std::size_t k = static_cast<std::size_t>(a) * body.stride + i;
-      m_acceleration[k] = share * (m_f[k] * m_inverse_mass[a] - m_damping * m_v[k]);
-    }
-  }
-  m_constraints.clear(m_acceleration);
-  for (std::size_t k = 0; k < m_v.size(); ++k)
-    m_v_full[k] += 0.5 * m_dt_last * m_acceleration[k];
-  State s;
-  s.t = m_problem.is_static ? load_time() : m_t;
-  s.u = m_u;
-  s.v = m_v_full;
-  s.unbalanced = m_f;
-  s.acceleration = m_acceleration;
-  s.external_work = m_work.total(m_u, m_v_full);
-  if (m_fracturing != nullptr) s.released = m_fracturing->record().released;
-  s.impulse = m_work.constant_resultant() * m_t;
-  if (!m_dissipation.active()) return s;
-  try {
-    m_dissipation.before(load_time(), m_u, m_v, m_f);
-  } catch (const BadState&) {  // after a step that could not be undone
-    return s;
-  }
-  s.dissipation = m_dissipation.work() + m_dissipation.taken(0.5 * m_dt_last, m_v_full);
-  return s;
-}
-
-bool Leapfrog::settled(double fraction) {
-  Column load(m_f.size(), 0.0);
-  m_loads.add(load_time(), load);
-  double residual = 0, scale = 0;
-  Column free = m_f;
-  m_constraints.clear(free);
-  for (std::size_t k = 0; k < m_f.size(); ++k) {
-    residual += free[k] * free[k];
-    scale += (m_f[k] - load[k]) * (m_f[k] - load[k]);
-  }
-  return residual <= fraction * fraction * scale;
-}
-
 /// Due `count` times evenly over [0, end], and at the end.
 class Leapfrog::Schedule {
  public:
-  Schedule(int count, double end) : m_count(count), m_end(end) {}
+  Schedule(int count, double end, long& next) : m_count(count), m_end(end), m_next(next) {}
   bool due(double t) {
     if (t >= m_end) return true;
     if (m_count <= 0 || t < static_cast<double>(m_next) * m_end / m_count) return false;
@@ -230,7 +145,7 @@ class Leapfrog::Schedule {
  private:
   int m_count;
   double m_end;
-  long m_next = 1;
+  long& m_next;
 };
 
 void Leapfrog::step(double dt) {
@@ -251,75 +166,30 @@ void Leapfrog::step(double dt) {
 
 /// Writes the state unless it has been written.
 void Leapfrog::write(Recorder& recorder, bool row, bool frame) {
-  if (row && m_row_at != m_t) recorder.row(state());
-  if (frame && m_frame_at != m_t) recorder.frame(state());
+  m_row_due = row && m_row_at != m_t;
+  m_frame_due = frame && m_frame_at != m_t;
+  if (m_row_due) recorder.row(state());
   if (row) m_row_at = m_t;
+  m_row_due = false;
+  if (m_frame_due) recorder.frame(state());
   if (frame) m_frame_at = m_t;
-}
-
-/// After a step that failed: undoes its drift, so that the last good state can be written and
-/// told. False where that gives no good state either.
-bool Leapfrog::step_back() {
-  const double dt = m_dt_last;
-  for (std::size_t k = 0; k < m_u.size(); ++k) m_u[k] -= dt * m_v[k];
-  m_t -= dt;
-  if (m_constraints.moving()) {  // the step's prescribed values may not be numbers
-    // Prescribed particles keep the velocity of a step earlier.
-    m_constraints.impose(load_time(m_t - dt), m_v);
-    m_constraints.impose(load_time(), m_u);
-    for (const PrescribedDof& dof : m_constraints.dofs()) {
-      const std::size_t k =
-          static_cast<std::size_t>(dof.particle) * m_model.body().stride + dof.component;
-      m_v[k] = dt > 0 && m_t >= dt ? (m_u[k] - m_v[k]) / dt : 0;
-    }
-  }
-  m_dt_last = 0;
-  try {
-    m_model.forces(m_u, m_v, m_f, m_executor);
-    m_loads.add(load_time(), m_f);
-  } catch (const BadState&) {
-    return false;
-  }
-  return !not_finite();
-}
-
-/// The first displacement, velocity or force that is not a finite number.
-std::optional<BadState> Leapfrog::not_finite() const {
-  const Body& body = m_model.body();
-  const std::pair<const Column&, const char*> columns[] = {
-      {m_u, "displacement"}, {m_v, "velocity"}, {m_f, "force"}};
-  for (const auto& [column, quantity] : columns) {
-    double sum = 0;  // 0 x is 0 or not a number
-    for (const double x : column) sum += 0 * x;
-    if (sum == 0) continue;
-    for (Index a = 0; a < body.n; ++a) {
-      for (int i = 0; i < body.dim; ++i) {
-        if (!std::isfinite(column[static_cast<std::size_t>(a) * body.stride + i]))
-          return BadState{quantity, body.particle_at(a)};
-      }
-    }
-  }
-  return {};
-}
-
-/// Before a state is looked at or written. Throws BadState.
-void Leapfrog::check_finite() {
-  const std::optional<BadState> bad = not_finite();
-  if (!bad) return;
-  m_in_step = true;  // this state is not taken
-  throw *bad;
+  m_frame_due = false;
 }
 
 void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
                        LeapfrogOutcome& outcome) {
   const double end = options.end_time;
-  Schedule rows(options.history_rows, end), frames(options.frames, end);
-  double dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
-  double gradient = largest_gradient();
-  while (m_t < end) {
+  Schedule rows(options.history_rows, end, m_next_row),
+      frames(options.frames, end, m_next_frame);
+  write(recorder, m_row_due, m_frame_due);
+  if (!(m_dt > 0)) {
+    m_dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
+    m_gradient = largest_gradient();
+  }
+  while (m_t < end && !outcome.settled) {
     const auto begin = Clock::now();
     const double left = end - m_t;
-    const double size = left / std::ceil(left / dt * (1 - 1e-12));
+    const double size = left / std::ceil(left / m_dt * (1 - 1e-12));
     const bool last = left - size < 1e-9 * size;
     step(size);
     outcome.particle_steps += m_awake_count;
@@ -333,9 +203,9 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     outcome.dt = size;
     if (look && options.dt_fixed <= 0) {
       const double now = largest_gradient();
-      if (std::abs(now - gradient) > options.reestimate_at) {
-        dt = critical_step(options.dt_factor);
-        gradient = now;
+      if (std::abs(now - m_gradient) > options.reestimate_at) {
+        m_dt = critical_step(options.dt_factor);
+        m_gradient = now;
       }
     }
     outcome.settled = look && options.stop_at_residual > 0 && m_t >= m_ramp &&
@@ -345,14 +215,32 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     if ((row || frame) && options.progress) {
       options.progress(m_t / end, "time step " + std::to_string(outcome.steps));
     }
+    if (features::output && (look || row || frame) && options.checkpoints != nullptr &&
+        options.checkpoints->due())
+      save(options, recorder, outcome);
     if (outcome.settled) break;
     scene::check_interrupt();
   }
 }
 
+/// Forces and accounts at t = 0.
+void Leapfrog::start() {
+  advance_forces(0);
+  check_finite();
+  m_model.commit();
+  m_work.start(load_time(), m_u, m_f);
+  m_row_due = m_frame_due = true;
+}
+
 void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
                    LeapfrogOutcome& outcome) {
   m_damping = options.damping;
+  m_dissipation.start(m_damping);
+  const bool resumes = options.checkpoints != nullptr && options.checkpoints->resumes();
+  if (resumes) {
+    options.checkpoints->restore(
+        [&](scene::Checkpoint& state) { keep(state, recorder, outcome); });
+  }
   const auto failure = [&](const BadState& bad, long step) {
     return SolveError(bad.quantity, step, m_t, bad.particle,
                       bad.quantity == "det F" ? "det F <= 0 or not a number" : "not finite");
@@ -363,12 +251,7 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     follow_rest();
   }
   try {
-    advance_forces(0);
-    check_finite();
-    m_model.commit();
-    m_work.start(load_time(), m_u, m_f);
-    m_dissipation.start(m_damping);
-    write(recorder, true, true);
+    if (!resumes) start();
     advance(options, recorder, outcome);
   } catch (const BadState& bad) {
     const SolveError error = failure(bad, m_dt_last > 0 ? outcome.steps + 1 : 0);
@@ -376,7 +259,12 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
     if (started && good) write(recorder, true, true);
     throw error;
   } catch (const Interrupted&) {
-    if (!not_finite()) write(recorder, true, true);
+    if (not_finite()) throw;
+    save(options, recorder, outcome);
+    write(recorder, true, true);  // of this instant; a run that goes on takes them back
+    throw;
+  } catch (const scene::OutputError&) {
+    save_unwritten(options, recorder, outcome);
     throw;
   }
 }

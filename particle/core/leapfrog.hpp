@@ -1,6 +1,7 @@
 #pragma once
 // The one explicit integrator of all particle methods: leapfrog (central differences).
 
+#include "particle/core/checkpoint.hpp"
 #include "particle/core/recorder.hpp"
 #include "particle/core/rest_regions.hpp"
 #include "particle/core/stable_step.hpp"
@@ -34,15 +35,18 @@ struct LeapfrogOptions {
   /// > 0: stop after the ramp when the unbalanced force falls below this times the largest
   /// internal force (both norms).
   double stop_at_residual = 0;
+  /// Where the run saves itself, and goes on from; nullptr: nowhere.
+  Checkpoints* checkpoints = nullptr;
 };
 
 struct LeapfrogOutcome {
   long steps = 0;
   double dt = 0;              ///< last step [s]
   double t = 0;               ///< time reached [s]
-  double loop_s = 0;          ///< wall time of the loop without output
+  double loop_s = 0;          ///< wall time of the loop without output, over all resumes
   bool settled = false;       ///< stopped by stop_at_residual
   double particle_steps = 0;  ///< particles whose forces were computed, summed over the steps
+  std::vector<long> resumed_at;  ///< steps after which the run has been resumed
 };
 
 /// v_{n+1/2} = v_{n-1/2} + dt f(u_n)/m, u_{n+1} = u_n + dt v_{n+1/2}: second order, symplectic
@@ -57,7 +61,10 @@ class Leapfrog {
 
   /// Runs to the end time, writing to `recorder`. Throws SolveError (det F <= 0, NaN) with
   /// step, time and particle, and Interrupted, both after writing the last good state (if the
-  /// failed step can be undone). What is written is finite.
+  /// failed step can be undone). What is written is finite. Throws OutputError when a file
+  /// cannot be written, and InputError for a checkpoint of another run.
+  /// With checkpoints: saves itself when their time has come, when interrupted, and where rows
+  /// and frames cannot be written.
   /// `outcome` is current whenever it throws.
   void run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
 
@@ -80,7 +87,12 @@ class Leapfrog {
   bool step_back();
   std::optional<BadState> not_finite() const;
   void check_finite();
+  void start();
   void advance(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
+  void keep(scene::Checkpoint& state, Recorder& recorder, LeapfrogOutcome& outcome);
+  void save(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
+  void save_unwritten(const LeapfrogOptions& options, Recorder& recorder,
+                      LeapfrogOutcome& outcome);
   void write(Recorder& recorder, bool row, bool frame);
   void kick(double dt, double damping);
   void drift(double dt);
@@ -107,6 +119,10 @@ class Leapfrog {
   double m_t = 0, m_dt_last = 0, m_damping = 0;
   bool m_in_step = false;                 ///< a step has begun and its state has not been taken
   double m_row_at = -1, m_frame_at = -1;  ///< times last written
+  bool m_row_due = false, m_frame_due = false;  ///< of the present state, and not yet written
+  long m_next_row = 1, m_next_frame = 1;        ///< numbers, of those at even times
+  double m_dt = 0;                              ///< longest step now [s]; 0: not asked for yet
+  double m_gradient = 0;                        ///< largest, when it was asked for
 };
 
 }  // namespace concord::particle

@@ -1,11 +1,13 @@
 #include "particle/core/particle_method.hpp"
 
+#include "particle/core/checkpoint.hpp"
 #include "particle/core/interpolant.hpp"
 #include "particle/core/leapfrog.hpp"
 #include "particle/core/statics.hpp"
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 
@@ -37,6 +39,7 @@ struct Run {
   const Executor& executor;
   Recorder& recorder;
   scene::Result& result;
+  Checkpoints* checkpoints;  ///< nullptr: none
 
   void finish(const State& state) {
     result.t_end = state.t;
@@ -87,17 +90,23 @@ struct Run {
       options.ramp_time = options.end_time = duration;
     else if (problem.is_static)
       relaxation(options);
+    options.checkpoints = checkpoints;
     Leapfrog integrator(problem, model, constraints, loads, executor, options.ramp_time);
     LeapfrogOutcome outcome;
     const auto tell = [&] {
       result.steps = outcome.steps;
       result.dt = outcome.dt;
       result.wall_s = outcome.loop_s;
+      tell_resumed(outcome);
       finish(integrator.state());
       recorder.add_invariants(result, options.damping > 0);
     };
     try {
       integrator.run(options, recorder, outcome);
+    } catch (const InputError&) {  // of a checkpoint: nothing has been reached
+      throw;
+    } catch (const scene::OutputError&) {  // nothing more can be written
+      throw;
     } catch (...) {
       tell();
       throw;
@@ -108,6 +117,13 @@ struct Run {
           "equilibrium", outcome.steps, outcome.t, -1,
           "the damped motion did not settle to the asked residual; more time: settle_time");
     }
+  }
+
+  void tell_resumed(const LeapfrogOutcome& outcome) const {
+    if (outcome.resumed_at.empty()) return;
+    result.notes["resumed"] = fmt::format("after step {}", fmt::join(outcome.resumed_at, ", "));
+    if (checkpoints->elsewhere())
+      result.notes["resumed"] += ", with another program or processor: last bits may differ";
   }
 
   /// Damped dynamics for a static problem: loads ramp up over a few periods of the body's
@@ -221,12 +237,54 @@ std::shared_ptr<const scene::Field> field_of(Body& body, const scene::Samples& s
   return std::make_shared<ParticleField>(body, samples.X, samples.u, std::move(H));
 }
 
+/// FNV-1a (Fowler, Noll, Vo; RFC 9923) over numbers instead of bytes: to tell bodies apart.
+class Fingerprint {
+ public:
+  template <class Values> void add(const Values& values) {
+    for (const auto value : values) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &value, sizeof value);
+      m_hash = (m_hash ^ bits) * 0x100000001b3;
+    }
+  }
+  std::uint64_t value() const { return m_hash; }
+
+ private:
+  std::uint64_t m_hash = 0xcbf29ce484222325;
+};
+
+/// What a checkpoint must have been made with: everything but the number of threads.
+RunFacts facts(const std::string& method, const scene::Problem& problem,
+               const scene::RunRequest& request, const scene::Settings& settings,
+               const Body& body) {
+  RunFacts facts{{"scene", problem.name},
+                 {"text of the scene", problem.normalised_text},
+                 {"method", method},
+                 {"spacing", fmt::format("{} m", request.h)},
+                 {"perturb", fmt::format("{}", request.perturb)},
+                 {"seed", fmt::format("{}", request.seed)},
+                 {"frames", request.write_frames ? "on" : "off"}};
+  for (const auto& [key, value] : settings.all()) facts.emplace_back(method + "." + key, value);
+  Fingerprint particles;
+  particles.add(body.X);
+  particles.add(body.V);
+  particles.add(body.m);
+  particles.add(body.triangulation.simplices);
+  facts.emplace_back("particles", fmt::format("{}, with the fingerprint {:016x}", body.bulk,
+                                              particles.value()));
+  return facts;
+}
+
 }  // namespace
 
-void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest& request,
-                         scene::Result& result) const {
+void ParticleMethod::run_kept(const scene::Problem& problem, const scene::RunRequest& request,
+                              const scene::Keeping& keeping, scene::Result& result) const {
   const scene::Settings settings(m_info.name, m_info.parameters, request.settings);
   if (!breaks()) scene::refuse_fracture(problem, m_info.name);
+  const bool newton = problem.is_static && settings.word("solver") != "explicit";
+  if (newton && keeping.resume)
+    throw InputError({keeping.file.string()}, "resume", "a static solve",
+                     "runs of the explicit integrator: static solves have no checkpoints");
   const auto begin = Clock::now();
   const Executor executor(request.threads);
   Body body = make_particles(problem, request, settings, executor);
@@ -235,7 +293,7 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   const ExternalLoads loads(problem, *model);
   const bool dissipative = model->viscous() || damped(problem, settings);
   Recorder recorder(problem, *model, constraints, executor, request.out, request.write_frames,
-                    dissipative);
+                    dissipative, keeping.resume);
   result.h = request.h;
   result.particles = body.bulk;
   result.unknowns = constraints.unknowns();
@@ -244,14 +302,25 @@ void ParticleMethod::run(const scene::Problem& problem, const scene::RunRequest&
   result.setup_s = seconds_since(begin) + body.saved_s;
   if (body.saved_s > 0) result.notes["body"] = "from the cache";
   check_solver(m_info.name, problem, settings, model->viscous());
-  Run run{problem,     request, settings, body,     *model,
-          constraints, loads,   executor, recorder, result};
+  Checkpoints checkpoints(keeping,
+                          [&] { return facts(m_info.name, problem, request, settings, body); });
+  Run run{problem,
+          request,
+          settings,
+          body,
+          *model,
+          constraints,
+          loads,
+          executor,
+          recorder,
+          result,
+          keeping.file.empty() ? nullptr : &checkpoints};
   const auto complete = [&] {
     model.reset();
     if (!result.samples.u.empty()) result.field = field_of(body, result.samples);
   };
   try {
-    if (problem.is_static && settings.word("solver") != "explicit")
+    if (newton)
       run.statics();
     else
       run.dynamics();

@@ -3,6 +3,7 @@
 // histories, frames, result.
 
 #include "particle/core/force_model.hpp"
+#include "scene/checkpoint.hpp"
 #include "scene/discrete_body.hpp"
 
 #include <memory>
@@ -12,14 +13,22 @@ namespace concord::particle {
 /// A particle formulation as a Method. It says what it is and makes its force model; the rest
 /// is the same for all. To add a formulation: derive, implement make_model, and register with
 /// scene::RegisterMethod.
-class ParticleMethod : public scene::Method, public scene::Discretises {
+class ParticleMethod : public scene::Method,
+                       public scene::Discretises,
+                       public scene::Resumable {
  public:
   /// `own`: name, title, source and the formulation's own parameters; those of the solvers are
   /// appended.
   explicit ParticleMethod(scene::MethodInfo own);
   const scene::MethodInfo& info() const final { return m_info; }
   void run(const scene::Problem& problem, const scene::RunRequest& request,
-           scene::Result& result) const final;
+           scene::Result& result) const final {
+    run_kept(problem, request, {}, result);
+  }
+  /// Runs of the explicit integrator have checkpoints, static solves have none: to resume one
+  /// of these throws InputError.
+  void run_kept(const scene::Problem& problem, const scene::RunRequest& request,
+                const scene::Keeping& keeping, scene::Result& result) const final;
   std::unique_ptr<scene::DiscreteBody> discretise(const scene::Problem& problem,
                                                   const scene::RunRequest& request) const final;
 

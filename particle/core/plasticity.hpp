@@ -8,6 +8,10 @@
 
 #include <vector>
 
+namespace concord::scene {
+class Checkpoint;
+}
+
 namespace concord::particle {
 
 /// Particles that the stress kernels work on at once (see stress_kernel.hpp).
@@ -85,6 +89,9 @@ class PlasticHistory {
   /// While held, no particle flows: forces answer elastically from the committed state, as they
   /// do to a reversal. For the stable time step.
   void hold(bool on);
+
+  /// The committed states, saved or restored.
+  void keep(scene::Checkpoint& state);
 
  private:
   /// The same for one lane, by J2Hencky::update.

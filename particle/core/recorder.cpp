@@ -11,10 +11,11 @@ namespace concord::particle {
 
 Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
                    const Constraints& constraints, const Executor& executor,
-                   const std::filesystem::path& folder, bool frames, bool dissipative)
+                   const std::filesystem::path& folder, bool frames, bool dissipative,
+                   bool resumes)
     : m_problem(problem), m_model(model), m_executor(executor),
       m_quantities(problem, model, constraints), m_free(constraints.dofs().empty()),
-      m_dissipative(dissipative), m_folder(folder) {
+      m_dissipative(dissipative), m_folder(folder), m_write_frames(frames && !folder.empty()) {
   if (const Fracturing* fracturing = model.fracturing())
     m_crack.emplace(problem, model.body(), constraints, *fracturing);
   else if (Hourglass(model.body()).defined())
@@ -22,9 +23,9 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
   const ExternalLoads loads(problem, model);
   m_steady = !loads.depend_on_time();
   m_unloaded = loads.none();
-  if (folder.empty()) return;
-  m_history = scene::HistoryWriter(folder / "history.csv", columns());
-  if (frames) m_frames = scene::FrameWriter(folder);
+  if (folder.empty() || resumes) return;
+  scene::writing(history_file(),
+                 [&] { m_history = scene::HistoryWriter(history_file(), columns()); });
 }
 
 std::vector<std::string> Recorder::columns() const {
@@ -84,30 +85,44 @@ Balance Recorder::balance(const State& state) {
 }
 
 void Recorder::follow(const Balance& b, const Vec3& impulse) {
-  m_largest_energy = std::max(m_largest_energy, b.stored() + std::abs(b.external_work));
-  m_largest_work = std::max(m_largest_work, std::abs(b.external_work));
-  m_energy_change = std::max(m_energy_change, std::abs(b.total() - m_first.total()));
-  m_linear_change = std::max(m_linear_change, (b.linear - m_first.linear - impulse).norm());
-  m_angular_change = std::max(m_angular_change, (b.angular - m_first.angular).norm());
-  m_linear_scale = std::max(m_linear_scale, b.linear_scale);
-  m_angular_scale = std::max(m_angular_scale, b.angular_scale);
+  m_account.largest_energy =
+      std::max(m_account.largest_energy, b.stored() + std::abs(b.external_work));
+  m_account.largest_work = std::max(m_account.largest_work, std::abs(b.external_work));
+  m_account.energy_change =
+      std::max(m_account.energy_change, std::abs(b.total() - m_account.first.total()));
+  m_account.linear_change =
+      std::max(m_account.linear_change, (b.linear - m_account.first.linear - impulse).norm());
+  m_account.angular_change =
+      std::max(m_account.angular_change, (b.angular - m_account.first.angular).norm());
+  m_account.linear_scale = std::max(m_account.linear_scale, b.linear_scale);
+  m_account.angular_scale = std::max(m_account.angular_scale, b.angular_scale);
 }
 
 void Recorder::follow(const Balance& b, const Roughness& roughness) {
   const double E = m_problem.material.E, energy = b.internal + b.plastic;
-  m_share = roughness.nonaffine_energy_share(E, energy);
-  m_checkerboard = roughness.checkerboard();
-  m_share_max = std::max(m_share_max, m_share);
-  m_checkerboard_max = std::max(m_checkerboard_max, m_checkerboard);
-  m_nonaffine_sum += roughness.nonaffine_energy(E);
-  m_energy_sum += roughness.nonaffine_energy(E) + energy;
+  m_account.share = roughness.nonaffine_energy_share(E, energy);
+  m_account.checkerboard = roughness.checkerboard();
+  m_account.share_max = std::max(m_account.share_max, m_account.share);
+  m_account.checkerboard_max = std::max(m_account.checkerboard_max, m_account.checkerboard);
+  m_account.nonaffine_sum += roughness.nonaffine_energy(E);
+  m_account.energy_sum += roughness.nonaffine_energy(E) + energy;
 }
 
 void Recorder::row(const State& state) {
+  const Account before = m_account;
+  try {
+    add_row(state);
+  } catch (...) {
+    m_account = before;
+    throw;
+  }
+}
+
+void Recorder::add_row(const State& state) {
   const Balance b = balance(state);
-  if (!m_any) m_first = b;
-  m_last = b;
-  m_any = true;
+  if (!m_account.any) m_account.first = b;
+  m_account.last = b;
+  m_account.any = true;
   const std::span<const Mat3> H = gradients(state);
   follow(b, state.impulse);
   if (m_hourglass) follow(b, m_hourglass->measure(state.u, H));
@@ -118,12 +133,18 @@ void Recorder::row(const State& state) {
   if (m_model.constitution().plastic()) m_values.push_back(b.plastic);
   if (m_dissipative) m_values.push_back(b.dissipation);
   if (m_crack) m_values.push_back(b.released);
-  m_values.insert(m_values.end(), {b.external_work, b.total() - m_first.total()});
+  m_values.insert(m_values.end(), {b.external_work, b.total() - m_account.first.total()});
   m_values.insert(m_values.end(), b.linear.begin(), b.linear.end());
   m_values.insert(m_values.end(), b.angular.begin(), b.angular.end());
   if (m_crack) m_crack->append(m_values);
-  if (m_hourglass) m_values.insert(m_values.end(), {m_share, m_checkerboard});
-  m_history.append(m_values);
+  if (m_hourglass) m_values.insert(m_values.end(), {m_account.share, m_account.checkerboard});
+  try {
+    scene::writing(history_file(), [&] { m_history.append(m_values); });
+  } catch (const scene::OutputError&) {
+    m_history = {};  // what it still holds goes first
+    scene::cut_half_row(history_file());
+    throw;
+  }
 }
 
 std::vector<std::pair<std::string, double>> Recorder::quantities(const State& state) {
@@ -136,7 +157,7 @@ std::vector<std::pair<std::string, double>> Recorder::quantities(const State& st
 }
 
 void Recorder::frame(const State& state) {
-  if (!m_frames.active()) return;
+  if (!m_write_frames) return;
   const Body& body = m_model.body();
   std::vector<Vec3> x(body.bulk), u(body.bulk), v(body.bulk);
   for (Index a = 0; a < body.bulk; ++a) {
@@ -166,37 +187,43 @@ void Recorder::frame(const State& state) {
     m_model.fracturing()->intact_share(intact);
     fields.push_back({"intact_share", 1, intact});
   }
-  m_frames.write(state.t, x, fields);
+  scene::add_frame(m_folder, m_frames, state.t, x, fields);
 }
 
 void Recorder::add_invariants(scene::Result& result, bool damped) const {
-  if (!m_any) return;
-  if (m_largest_energy > 0)
-    result.invariants["energy_drift"] = m_energy_change / m_largest_energy;
-  if (damped || !m_free || m_linear_scale == 0) return;
-  if (m_steady) result.invariants["linear_momentum_drift"] = m_linear_change / m_linear_scale;
+  if (!m_account.any) return;
+  if (m_account.largest_energy > 0)
+    result.invariants["energy_drift"] = m_account.energy_change / m_account.largest_energy;
+  if (damped || !m_free || m_account.linear_scale == 0) return;
+  if (m_steady)
+    result.invariants["linear_momentum_drift"] =
+        m_account.linear_change / m_account.linear_scale;
   if (m_unloaded)
-    result.invariants["angular_momentum_drift"] = m_angular_change / m_angular_scale;
+    result.invariants["angular_momentum_drift"] =
+        m_account.angular_change / m_account.angular_scale;
 }
 
 void Recorder::add_hourglass(scene::Result& result) const {
-  if (!m_any || !m_hourglass) return;
-  result.quantities["nonaffine_energy_share"] = m_share;
-  result.quantities["nonaffine_energy_share_max"] = m_share_max;
-  if (m_energy_sum > 0)
-    result.quantities["nonaffine_energy_share_mean"] = m_nonaffine_sum / m_energy_sum;
-  result.quantities["checkerboard"] = m_checkerboard;
-  result.quantities["checkerboard_max"] = m_checkerboard_max;
+  if (!m_account.any || !m_hourglass) return;
+  result.quantities["nonaffine_energy_share"] = m_account.share;
+  result.quantities["nonaffine_energy_share_max"] = m_account.share_max;
+  if (m_account.energy_sum > 0)
+    result.quantities["nonaffine_energy_share_mean"] =
+        m_account.nonaffine_sum / m_account.energy_sum;
+  result.quantities["checkerboard"] = m_account.checkerboard;
+  result.quantities["checkerboard_max"] = m_account.checkerboard_max;
 }
 
 void Recorder::add_cracks(scene::Result& result) {
-  if (!m_any || !m_crack) return;
+  if (!m_account.any || !m_crack) return;
   for (const auto& [name, value] : m_crack->quantities()) result.quantities[name] = value;
-  if (m_largest_work > 0)
-    result.quantities["energy_residual"] = m_energy_change / m_largest_work;
-  const double lost = m_last.dissipation + m_last.released;
-  if (lost > 0) result.quantities["dissipated_share"] = lost / (lost + m_last.stored());
-  if (!m_folder.empty()) m_crack->write(m_folder / "crack.csv");
+  if (m_account.largest_work > 0)
+    result.quantities["energy_residual"] = m_account.energy_change / m_account.largest_work;
+  const double lost = m_account.last.dissipation + m_account.last.released;
+  if (lost > 0) result.quantities["dissipated_share"] = lost / (lost + m_account.last.stored());
+  if (m_folder.empty()) return;
+  const std::filesystem::path file = m_folder / "crack.csv";
+  scene::writing(file, [&] { m_crack->write(file); });
 }
 
 scene::Samples Recorder::samples(const State& state) {

@@ -5,8 +5,8 @@
 #include "particle/core/crack_quantities.hpp"
 #include "particle/core/hourglass.hpp"
 #include "particle/core/quantities.hpp"
+#include "scene/continued_output.hpp"
 #include "scene/method.hpp"
-#include "scene/output.hpp"
 
 #include <filesystem>
 
@@ -27,13 +27,17 @@ class Recorder {
  public:
   /// `folder` empty: keeps the conservation record only. `dissipative`: the run has viscosity
   /// or damping, and a column for it. Throws InputError for quantities that name unknown
-  /// groups.
+  /// groups. `resumes`: the files in the folder go on where keep() says.
   Recorder(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
            const Executor& executor, const std::filesystem::path& folder, bool frames,
-           bool dissipative = false);
+           bool dissipative = false, bool resumes = false);
 
+  /// Both throw OutputError when the file cannot be written. What was there before then stays
+  /// as it was, here and on disk; no rows can follow.
   void row(const State& state);
   void frame(const State& state);
+  /// Saved or restored, files included: to be asked last.
+  void keep(scene::Checkpoint& state);
   /// Quantities of interest of a state: point and average as NAME_x.. [m], reaction as NAME_x..
   /// [N], maximum as NAME.
   std::vector<std::pair<std::string, double>> quantities(const State& state);
@@ -64,6 +68,8 @@ class Recorder {
   void add_motion(const State& state, Balance& b) const;
   void follow(const Balance& b, const Vec3& impulse);
   void follow(const Balance& b, const Roughness& roughness);
+  void add_row(const State& state);
+  std::filesystem::path history_file() const { return m_folder / "history.csv"; }
   /// Gradients at a state, in a buffer that the next call overwrites.
   std::span<const Mat3> gradients(const State& state);
 
@@ -76,16 +82,22 @@ class Recorder {
   std::optional<CrackQuantities> m_crack;  ///< where bonds can break
   std::optional<Hourglass> m_hourglass;    ///< where none can, and there are edges
   std::filesystem::path m_folder;
+  bool m_write_frames;
   scene::HistoryWriter m_history;
-  scene::FrameWriter m_frames;
+  scene::FrameList m_frames;
   std::vector<Mat3> m_H;
   std::vector<double> m_values;
-  bool m_any = false;
-  Balance m_first, m_last;
-  double m_largest_energy = 0, m_largest_work = 0, m_energy_change = 0, m_linear_change = 0,
-         m_angular_change = 0, m_linear_scale = 0, m_angular_scale = 0;
-  double m_share = 0, m_share_max = 0, m_checkerboard = 0, m_checkerboard_max = 0;
-  double m_nonaffine_sum = 0, m_energy_sum = 0;  ///< over the rows [J]
+  /// Gathered over the rows.
+  struct Account {
+    bool any = false;
+    Balance first, last;
+    double largest_energy = 0, largest_work = 0, energy_change = 0, linear_change = 0,
+           angular_change = 0, linear_scale = 0, angular_scale = 0;
+    double share = 0, share_max = 0, checkerboard = 0, checkerboard_max = 0;
+    double nonaffine_sum = 0, energy_sum = 0;  ///< over the rows [J]
+    void keep(scene::Checkpoint& state);
+  };
+  Account m_account;
 };
 
 }  // namespace concord::particle

@@ -29,6 +29,8 @@ class ExternalWork {
   double total(std::span<const double> u, std::span<const double> v) const;
   /// Sum of the loads that never change [N]: their impulse in t is this times t.
   Vec3 constant_resultant() const;
+  /// Saved or restored (checkpoint.hpp).
+  void keep(scene::Checkpoint& state);
 
  private:
   void forces(double t, std::span<const double> f, std::vector<double>& out);
@@ -65,6 +67,8 @@ class Dissipation {
   /// The same, added up.
   void add(double dt, std::span<const double> v) { m_work += taken(dt, v); }
   double work() const { return m_work; }
+  /// Saved, or restored after start().
+  void keep(scene::Checkpoint& state);
 
  private:
   ForceModel& m_model;

@@ -23,13 +23,15 @@ struct Commands {
   std::function<int()> job;
 };
 
-/// What a run and a probe are asked for alike.
-void add_problem(CLI::App* command, RunOptions& options, const char* out) {
+/// What a run and a probe are asked for alike; a run to be resumed needs no more than its
+/// folder.
+void add_problem(CLI::App* command, RunOptions& options, const char* out, bool needed) {
   command
       ->add_option("SCENE", options.scene,
                    "a scene of the library, or the path of a scene file")
-      ->required();
-  command->add_option("--method", options.method, "see: concord list methods")->required();
+      ->required(needed);
+  command->add_option("--method", options.method, "see: concord list methods")
+      ->required(needed);
   command
       ->add_option("--resolution", options.resolution,
                    "N: mean spacing h = L/N with the scene's reference length L")
@@ -50,18 +52,28 @@ void add_problem(CLI::App* command, RunOptions& options, const char* out) {
 
 void add_run(CLI::App& app, Commands& commands) {
   CLI::App* run = app.add_subcommand("run", "run one method on one scene");
-  add_problem(run, commands.run, "default build/runs/SCENE-METHOD");
+  add_problem(run, commands.run, "default build/runs/SCENE-METHOD", false);
   run->add_flag("--frames,!--no-frames", commands.run.frames, "write field frames (default)");
   run->add_option("--repeats", commands.run.repeats,
                   "time N more runs, warm and without output: medians and quartiles");
-  run->callback(
-      [&commands] { commands.job = [&commands] { return run_command(commands.run); }; });
+  run->add_option("--checkpoint", commands.run.checkpoint,
+                  "seconds of wall time between two checkpoints of an explicit run (0: one at "
+                  "every row of the history); one more when it is stopped")
+      ->capture_default_str();
+  run->add_option("--resume", commands.run.resume,
+                  "DIR: go on with the run there that was stopped, to the same bits; takes its "
+                  "scene, method and settings from its checkpoint");
+  run->callback([run, &commands] {
+    for (const CLI::Option* option : run->get_options())
+      if (option->count() > 0) commands.run.given.push_back(option->get_name());
+    commands.job = [&commands] { return run_command(commands.run); };
+  });
 }
 
 void add_probe(CLI::App& app, Commands& commands) {
   CLI::App* probe = app.add_subcommand("probe", "a test of one method on one scene");
   probe->add_option("TEST", commands.probe.test, "see: concord list probes")->required();
-  add_problem(probe, commands.probe, "default build/probes/TEST-SCENE-METHOD");
+  add_problem(probe, commands.probe, "default build/probes/TEST-SCENE-METHOD", true);
   probe
       ->add_option("--option", commands.probe.option,
                    "key=value of the test; see: concord describe TEST")

@@ -18,7 +18,10 @@ struct RunOptions {
   std::vector<std::string> set;  ///< "key=value"
   std::filesystem::path out;     ///< empty: build/runs/SCENE-METHOD
   bool frames = true;
-  int repeats = 0;  ///< timed warm runs after the first; 0: the first one's times count
+  int repeats = 0;         ///< timed warm runs after the first; 0: the first one's times count
+  double checkpoint = 30;  ///< least wall time between checkpoints [s]
+  std::filesystem::path resume;      ///< folder of the run to go on with; empty: a new one
+  std::vector<std::string> given{};  ///< options on the command line, by their names
 };
 int run_command(const RunOptions& options);
 

@@ -1,12 +1,13 @@
 #include "studies/driver/commands.hpp"
 
+#include "scene/continued_output.hpp"
 #include "scene/norms.hpp"
-#include "scene/output.hpp"
 #include "scene/reader.hpp"
 #include "studies/driver/cache.hpp"
 #include "studies/driver/given.hpp"
 #include "studies/driver/memory.hpp"
 #include "studies/driver/progress.hpp"
+#include "studies/driver/resume.hpp"
 #include "studies/driver/timed_runs.hpp"
 
 #include <fmt/format.h>
@@ -36,6 +37,8 @@ void print_summary(const scene::RunIdentity& id, const scene::Result& result,
   print_map("errors", result.errors);
   print_map("invariants", result.invariants);
   print_map("quantities", result.quantities);
+  if (result.notes.contains("resumed"))
+    fmt::print("  resumed {}\n", result.notes.at("resumed"));
   fmt::print("  {}\n", (out / "summary.json").string());
 }
 
@@ -52,10 +55,65 @@ scene::RunRequest request_of(const RunOptions& options, const scene::Problem& pr
   return request;
 }
 
+void check(const RunOptions& options) {
+  for (const auto& [name, value] :
+       {std::pair{"SCENE", &options.scene}, std::pair{"--method", &options.method}})
+    if (value->empty())
+      throw InputError({"command line"}, name, "nothing",
+                       "SCENE and --method of a run, or --resume DIR");
+  check_numbers(options);
+  if (!(options.checkpoint >= 0))
+    throw InputError({"command line"}, "--checkpoint", fmt::format("{:g}", options.checkpoint),
+                     "seconds, 0 or more");
+}
+
+/// Nobody must take what an earlier run left for ours.
+void clear(const fs::path& out, bool resumes) {
+  fs::create_directories(out);
+  fs::remove(out / "summary.json");
+  if (!resumes && remove_checkpoint(out))
+    fmt::print(stderr, "concord: the run that was stopped in {} begins anew, not by --resume\n",
+               out.string());
+}
+
+/// Runs the method, with checkpoints where it has them.
+void run_kept(const scene::Method& method, const scene::Problem& problem,
+              const scene::RunRequest& request, const RunOptions& options,
+              scene::Result& result) {
+  const auto* resumable = dynamic_cast<const scene::Resumable*>(&method);
+  if (resumable == nullptr) return method.run(problem, request, result);
+  const scene::Keeping keeping{checkpoint_file(request.out), options.checkpoint,
+                               !options.resume.empty(), request_text(options)};
+  resumable->run_kept(problem, request, keeping, result);
+}
+
+/// After numerics that failed, a signal, a full disk: keeps what there is, where there is room
+/// for it, and says how to go on.
+[[noreturn]] void leave(const scene::RunIdentity& id, const scene::Result& result,
+                        const std::exception& error, const fs::path& out) {
+  if (dynamic_cast<const SolveError*>(&error)) remove_checkpoint(out);  // to fail again
+  try {
+    scene::write_file(out / "summary.json", scene::summary_json(id, result, error.what()));
+  } catch (const scene::OutputError&) {  // the first one is told
+  }
+  throw_with_advice(error, out);
+}
+
+void write_summary(const scene::RunIdentity& id, scene::Result& result, const Timings& timings,
+                   double bytes_per_particle, const fs::path& out) {
+  if (!timings.wall_s.empty()) {
+    result.setup_s = quantile(timings.setup_s, 0.5);
+    result.wall_s = quantile(timings.wall_s, 0.5);
+  }
+  const std::string summary = with_memory(scene::summary_json(id, result), bytes_per_particle);
+  scene::write_file(out / "summary.json", with_timings(summary, timings));
+}
+
 }  // namespace
 
-int run_command(const RunOptions& options) {
-  check_numbers(options);
+int run_command(const RunOptions& asked) {
+  const RunOptions options = asked.resume.empty() ? asked : resumed_options(asked);
+  check(options);
   const scene::Method& method = scene::MethodRegistry::instance().find(options.method);
   const Given given = sort_settings(options);
   const scene::Settings settings(options.method, method.info().parameters, given.of_method);
@@ -63,14 +121,12 @@ int run_command(const RunOptions& options) {
   const fs::path out = options.out.empty()
                            ? build_home() / "runs" / (problem.name + "-" + options.method)
                            : options.out;
-  fs::create_directories(out);
-  fs::remove(out /
-             "summary.json");  // of an earlier run: whoever reads it must not take it for ours
+  scene::RunRequest request = request_of(options, problem);
+  clear(out, !options.resume.empty());
   const scene::RunIdentity id{problem.name,  options.method,     settings.variant(),
                               problem.dim(), options.resolution, options.perturb,
                               options.seed};
   Progress progress(problem.name + ", " + options.method);
-  scene::RunRequest request = request_of(options, problem);
   request.settings = given.of_method;
   request.out = out;
   request.progress = [&progress](double done, const std::string& what) {
@@ -80,26 +136,20 @@ int run_command(const RunOptions& options) {
   result.threads = options.threads;
   if (options.repeats > 0) ::unsetenv("CONCORD_CACHE");  // set-up is timed: bodies are made
   const MemoryUse memory;
-  double bytes_per_particle = std::nan("");
-  Timings timings;  // the run itself is the warm-up where there are repeats
   try {
-    method.run(problem, request, result);
-    bytes_per_particle = memory.bytes_per_particle(result.particles);
+    run_kept(method, problem, request, options, result);
+    const double bytes_per_particle = memory.bytes_per_particle(result.particles);
     scene::add_exact_errors(problem, result);
-    timings = time_runs(method, problem, request, options.repeats);
+    // The run itself was the warm-up where there are repeats.
+    const Timings timings = time_runs(method, problem, request, options.repeats);
+    progress.finish();
+    write_summary(id, result, timings, bytes_per_particle, out);
   } catch (const InputError&) {
     throw;
-  } catch (const std::exception& error) {  // numerics or Ctrl-C: keep what there is
-    scene::write_file(out / "summary.json", scene::summary_json(id, result, error.what()));
-    throw;
+  } catch (const std::exception& error) {
+    leave(id, result, error, out);
   }
-  progress.finish();
-  if (options.repeats > 0) {
-    result.setup_s = quantile(timings.setup_s, 0.5);
-    result.wall_s = quantile(timings.wall_s, 0.5);
-  }
-  const std::string summary = with_memory(scene::summary_json(id, result), bytes_per_particle);
-  scene::write_file(out / "summary.json", with_timings(summary, timings));
+  remove_checkpoint(out);
   print_summary(id, result, out);
   return 0;
 }

@@ -1,0 +1,94 @@
+#include "scene/continued_output.hpp"
+
+#include "scene/errors.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+namespace concord::scene {
+namespace fs = std::filesystem;
+namespace {
+
+std::string reason_of_errno() { return errno != 0 ? std::strerror(errno) : "unknown reason"; }
+
+InputError not_ours(const fs::path& file, int line, const std::string& found) {
+  return {{file.string(), line}, "history", found, "the rows written before the checkpoint"};
+}
+
+std::string beginning(const fs::path& file, std::uintmax_t bytes) {
+  std::error_code absent;
+  if (fs::file_size(file, absent) < bytes || absent)
+    throw not_ours(file, 0, absent ? "nothing" : "less than that");
+  std::string text(bytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(bytes)))
+    throw not_ours(file, 0, "an unreadable file");
+  return text;
+}
+
+/// Numbers as HistoryWriter writes them: the shortest text that reads back to the same bits.
+std::vector<double> numbers(const fs::path& file, int line, const std::string& text) {
+  std::vector<double> row;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    double value = 0;
+    const auto [next, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || (next != end && *next != ','))
+      throw not_ours(file, line, '"' + text + '"');
+    row.push_back(value);
+    if (next == end) return row;
+    at = next + 1;
+  }
+}
+
+}  // namespace
+
+OutputError::OutputError(const fs::path& file, const std::string& reason)
+    : std::runtime_error(fmt::format("cannot write {}: {}", file.string(),
+                                     reason.empty() ? reason_of_errno() : reason)) {}
+
+HistoryWriter continue_history(const fs::path& file, const std::vector<std::string>& columns,
+                               std::uintmax_t bytes) {
+  const std::string old = beginning(file, bytes);
+  std::vector<std::vector<double>> rows;
+  int line = 0;
+  for (std::size_t begin = 0; begin < old.size();) {
+    const std::size_t end = old.find('\n', begin);
+    const std::string text = old.substr(begin, end - begin);
+    ++line;
+    if (end == std::string::npos) throw not_ours(file, line, '"' + text + '"');
+    begin = end + 1;
+    if (line == 1 && text != fmt::format("{}", fmt::join(columns, ",")))
+      throw not_ours(file, line, '"' + text + '"');
+    if (line == 1) continue;
+    rows.push_back(numbers(file, line, text));
+    if (rows.back().size() != columns.size()) throw not_ours(file, line, '"' + text + '"');
+  }
+  const fs::path temporary = file.string() + ".part";
+  HistoryWriter writer;
+  writing(file, [&] {
+    writer = HistoryWriter(temporary, columns);
+    for (const std::vector<double>& row : rows) writer.append(row);
+  });
+  if (fs::file_size(temporary) != bytes) throw not_ours(file, line, "other digits");
+  fs::rename(temporary, file);  // the writer goes on with it under that name
+  return writer;
+}
+
+void cut_half_row(const fs::path& file) noexcept {
+  try {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::size_t last = text.rfind('\n');
+    if (!stream.bad() && last != std::string::npos && last + 1 < text.size())
+      fs::resize_file(file, last + 1);
+  } catch (const std::exception&) {  // it stays as it is
+  }
+}
+
+}  // namespace concord::scene
