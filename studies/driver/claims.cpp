@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace concord::studies {
 namespace {
@@ -29,11 +30,12 @@ struct Wanted {
   const std::string& quantity;
   const std::optional<double>& resolution;
   Pool pool;
+  const std::optional<Pool>& over_resolutions;
 };
 
 Measured pooled(const Study& study, const std::vector<Row>& rows, const Wanted& wanted,
                 std::optional<std::size_t> only_case = std::nullopt) {
-  std::vector<double> values;
+  std::map<double, std::vector<double>> values;  // of resolutions, or all under 0
   Measured measured;
   for (const Row& row : rows) {
     const Case& entry = study.cases[row.case_index];
@@ -42,7 +44,7 @@ Measured pooled(const Study& study, const std::vector<Row>& rows, const Wanted& 
     const auto value = value_of(row, wanted.quantity);
     if (!value)
       return {{}, run_title(study, row) + ": " + why_absent(row, wanted.quantity), {}, {}};
-    values.push_back(*value);
+    values[wanted.over_resolutions ? row.resolution : 0].push_back(*value);
     if (!balance_closes(study, row).value_or(true))
       measured.remarks.push_back("energy balance does not close: " + run_title(study, row));
   }
@@ -52,7 +54,10 @@ Measured pooled(const Study& study, const std::vector<Row>& rows, const Wanted& 
                           : "no run of this case";
     return measured;
   }
-  measured.value = pool_of(values, wanted.pool);
+  std::vector<double> levels;
+  for (const auto& [resolution, runs] : values) levels.push_back(pool_of(runs, wanted.pool));
+  measured.value =
+      wanted.over_resolutions ? pool_of(levels, *wanted.over_resolutions) : levels.front();
   return measured;
 }
 
@@ -121,14 +126,16 @@ Measured measure(const Study& study, const Claim& claim, const std::vector<Row>&
     MatchedRatio ratio = matched_ratio(study, claim, rows);
     return {ratio.value, std::move(ratio.reason), {}, std::move(ratio.remarks)};
   }
-  const Wanted wanted{claim.selector, claim.quantity, claim.resolution, claim.over_seeds};
+  const Wanted wanted{claim.selector, claim.quantity, claim.resolution, claim.over_seeds,
+                      claim.over_resolutions};
   Measured value = claim.kind == ClaimKind::minimum ? least(study, claim, rows, wanted)
                                                     : pooled(study, rows, wanted);
   const bool divided = claim.kind == ClaimKind::ratio || claim.divided;
   if (!divided || !value.value) return value;
   Measured other =
       pooled(study, rows,
-             {claim.other, claim.other_quantity, claim.other_resolution, claim.over_seeds});
+             {claim.other, claim.other_quantity, claim.other_resolution,
+              claim.other_over_seeds.value_or(claim.over_seeds), claim.other_over_resolutions});
   if (!other.value) return other;
   if (*other.value == 0) return {{}, "the denominator is 0", {}, {}};
   *value.value /= *other.value;

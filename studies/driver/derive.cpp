@@ -96,14 +96,17 @@ void add_error(const Study& study, const ErrorEntry& entry, const std::vector<Ro
     source["balance"] = balance_text(false);
 }
 
-/// The samples at and after `from` [s]; a sample less than 1e-9 of the record before counts.
-Record part_of(const Record& whole, double from) {
+/// The samples from `from` to `to` [s]; one less than 1e-9 of the record outside counts.
+Record part_of(const Record& whole, const Signal& signal) {
   if (!whole.reason.empty() || whole.t.empty()) return whole;
   const double slack = 1e-9 * (whole.t.back() - whole.t.front());
-  const auto first = std::lower_bound(whole.t.begin(), whole.t.end(), from - slack);
+  auto first = whole.t.begin(), last = whole.t.end();
+  if (signal.from) first = std::lower_bound(first, last, *signal.from - slack);
+  if (signal.to) last = std::upper_bound(first, last, *signal.to + slack);
   Record part;
-  part.t.assign(first, whole.t.end());
-  part.x.assign(whole.x.begin() + (first - whole.t.begin()), whole.x.end());
+  part.t.assign(first, last);
+  part.x.assign(whole.x.begin() + (first - whole.t.begin()),
+                whole.x.begin() + (last - whole.t.begin()));
   return part;
 }
 
@@ -117,7 +120,7 @@ void add_signals(const Study& study, std::vector<Row>& rows, const fs::path& out
       target = json::object();
       target["column"] = signal.column;
       const Record whole = read_record(history_of(row, out), signal.column);
-      const Record record = signal.from ? part_of(whole, *signal.from) : whole;
+      const Record record = part_of(whole, signal);
       for (const std::string& name : signal.features) {
         const Feature feature =
             record.reason.empty()

@@ -67,6 +67,14 @@ void read_history(StrictTable& table, Plot& plot) {
   plot.change = table.flag_or("change", false);
   plot.change_from = table.optional_number("change_from");
   plot.norm = table.flag_or("norm", false);
+  plot.share_of = table.texts("share_of");
+  plot.rate_over = table.optional_number("rate_over");
+  if (plot.rate_over && !(*plot.rate_over > 0))
+    table.reject(*table.node("rate_over"), "the width of a window [s], above 0");
+  if (!plot.share_of.empty() && plot.columns.empty())
+    table.missing("columns", "the columns whose sum is drawn");
+  if (!plot.share_of.empty() && (plot.rate_over || plot.change || plot.norm))
+    table.reject(*table.node("share_of"), "without rate_over, change and norm");
 }
 
 /// What histories and curves share.

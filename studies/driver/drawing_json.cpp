@@ -115,6 +115,8 @@ json plot_json(const Study& study, const Plot& plot) {
   if (plot.change) object["change"] = true;
   put(object, "change_from", plot.change_from);
   if (plot.norm) object["norm"] = true;
+  if (!plot.share_of.empty()) object["share_of"] = plot.share_of;
+  put(object, "rate_over", plot.rate_over);
   if (plot.log) object["log"] = true;
   put(object, "slope", plot.slope);
   put_window(object, "inset", plot.inset);

@@ -1,9 +1,10 @@
-// Readers of [[signal]], [[error]], [[matched]] and [[heatmap]].
+// Readers of [[signal]], [[error]], [[matched]], [[heatmap]] and [[table]].
 
 #include "studies/driver/signals.hpp"
 #include "studies/driver/study_entries.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 namespace concord::studies {
@@ -37,6 +38,13 @@ void read_error_reference(StrictTable& table, ErrorEntry& entry) {
   reference.finish();
 }
 
+int read_digits(StrictTable& table, int by_default) {
+  const double digits = table.number_or("digits", by_default);
+  if (digits != std::floor(digits) || digits < 1 || digits > 17)
+    table.reject(*table.node("digits"), "significant digits, 1 to 17");
+  return static_cast<int>(digits);
+}
+
 HeatRow read_heat_row(StrictTable table) {
   HeatRow row;
   row.label = table.text("label");
@@ -59,14 +67,39 @@ HeatRow read_heat_row(StrictTable table) {
   row.logarithmic = choose<bool>(table, "scale", {{"linear", false}, {"log", true}}, &linear);
   if (row.logarithmic && !(row.good > 0 && row.bad > 0))
     table.reject(*table.node("scale"), "\"linear\", or good and bad above 0");
-  const double digits = table.number_or("digits", row.digits);
-  row.digits = static_cast<int>(digits);
-  if (digits != row.digits || digits < 1 || digits > 17)
-    table.reject(*table.node("digits"), "significant digits, 1 to 17");
+  row.digits = read_digits(table, row.digits);
   row.note = table.text_or("note", "");
   row.absent = table.text_or("absent", "");
   table.finish();
   return row;
+}
+
+TableColumn read_table_column(StrictTable table) {
+  TableColumn column;
+  column.label = table.text("label");
+  column.quantity = table.text("quantity");
+  column.unit = table.text_or("unit", "1");
+  display_factor(column.unit, table.where());
+  column.over_seeds = table.node("over_seeds") ? read_pool(table) : Pool::mean;
+  column.digits = read_digits(table, column.digits);
+  column.difference = table.flag_or("difference", false);
+  table.finish();
+  return column;
+}
+
+TableLine read_table_line(StrictTable table) {
+  TableLine line;
+  line.label = table.text("label");
+  line.source_value = table.text_or("source_value", "");
+  line.selector = read_selector(table);
+  line.resolution = table.optional_number("resolution");
+  if (table.node("against")) {
+    StrictTable against = table.table("against", "a case: { variant = \"...\" }");
+    line.against = read_selector(against);
+    against.finish();
+  }
+  table.finish();
+  return line;
 }
 
 }  // namespace
@@ -77,10 +110,10 @@ WorkTime read_work_time(StrictTable& table) {
       table, "time", {{"wall_s", WorkTime::wall}, {"total", WorkTime::total}}, &by_default);
 }
 
-Pool read_pool(StrictTable& table) {
+Pool read_pool(StrictTable& table, const std::string& key) {
   const Pool by_default = Pool::max;
   return choose<Pool>(
-      table, "over_seeds",
+      table, key,
       {{"max", Pool::max}, {"min", Pool::min}, {"mean", Pool::mean}, {"range", Pool::range}},
       &by_default);
 }
@@ -102,7 +135,10 @@ Signal read_signal(StrictTable table) {
   signal.prominence = table.number_or("prominence", signal.prominence);
   if (!(signal.prominence > 0 && signal.prominence < 1))
     table.reject(*table.node("prominence"), "a fraction of the record's range, 0 to 1");
-  if (table.node("from")) signal.from = table.number_or("from", 0);
+  signal.from = table.optional_number("from");
+  signal.to = table.optional_number("to");
+  if (signal.to && !(*signal.to > signal.from.value_or(0)))
+    table.reject(*table.node("to"), "a time in s after `from`, or after 0");
   signal.selector = read_selector(table);
   table.finish();
   return signal;
@@ -145,6 +181,22 @@ Matched read_matched(StrictTable table) {
   matched.selector = read_selector(table);
   table.finish();
   return matched;
+}
+
+RunTable read_run_table(StrictTable table) {
+  RunTable entry;
+  entry.where = table.where();
+  entry.title = table.text("title");
+  entry.note = table.text_or("note", "");
+  for (const StrictTable& column : table.inner_tables("columns"))
+    entry.columns.push_back(read_table_column(column));
+  for (const StrictTable& line : table.inner_tables("rows"))
+    entry.lines.push_back(read_table_line(line));
+  if (entry.columns.empty())
+    table.missing("columns", "[{ label = \"...\", quantity = \"...\" }]");
+  if (entry.lines.empty()) table.missing("rows", "[{ label = \"...\", variant = \"...\" }]");
+  table.finish();
+  return entry;
 }
 
 Heatmap read_heatmap(StrictTable table) {

@@ -2,6 +2,7 @@
 
 #include "studies/driver/drawing_json.hpp"
 #include "studies/driver/heatmap.hpp"
+#include "studies/driver/run_table.hpp"
 #include "studies/driver/work_precision.hpp"
 
 #include <algorithm>
@@ -133,6 +134,30 @@ json heatmap_json(const StudyResult& result, const Heatmap& map) {
     for (const HeatColumn& column : map.columns)
       line["cells"].push_back(cell_json(heat_cell(*result.study, result.rows, column, row)));
     object["rows"].push_back(std::move(line));
+  }
+  return object;
+}
+
+json run_table_json(const StudyResult& result, const RunTable& entry) {
+  json object{{"title", entry.title}, {"columns", json::array()}, {"rows", json::array()}};
+  put_text(object, "note", entry.note);
+  for (const TableColumn& column : entry.columns)
+    object["columns"].push_back({{"label", column.label},
+                                 {"quantity", column.quantity},
+                                 {"unit", column.unit},
+                                 {"digits", column.digits},
+                                 {"difference", column.difference}});
+  for (const TableLine& line : entry.lines) {
+    json row{{"label", line.label}, {"cells", json::array()}};
+    put_text(row, "source_value", line.source_value);
+    for (const TableColumn& column : entry.columns) {
+      const TableCell cell = table_cell(*result.study, result.rows, line, column);
+      json one{{"value", cell.value ? json(*cell.value) : json(nullptr)}, {"runs", cell.runs}};
+      put_text(one, "reason", cell.reason);
+      put_balance(one, cell.closes);
+      row["cells"].push_back(std::move(one));
+    }
+    object["rows"].push_back(std::move(row));
   }
   return object;
 }

@@ -1,6 +1,7 @@
-// Tables of work-precision plots, matched errors and heat maps.
+// Tables of work-precision plots, matched errors, heat maps and chosen cases.
 
 #include "studies/driver/heatmap.hpp"
+#include "studies/driver/run_table.hpp"
 #include "studies/driver/tables.hpp"
 #include "studies/driver/work_precision.hpp"
 
@@ -86,6 +87,21 @@ Table heatmap_table(const StudyResult& result, const Heatmap& map, std::size_t n
   return table;
 }
 
+Table run_table(const StudyResult& result, const RunTable& entry, std::size_t n) {
+  Table table{fmt::format("table-{}", n), {"", "source"}, {}};
+  for (const TableColumn& column : entry.columns)
+    table.columns.push_back(
+        column.unit == "1" ? column.label : fmt::format("{} [{}]", column.label, column.unit));
+  for (const TableLine& line : entry.lines) {
+    Cells cells{line.label, line.source_value};
+    for (const TableColumn& column : entry.columns)
+      cells.push_back(
+          number(table_cell(*result.study, result.rows, line, column).value, column.digits));
+    table.cells.push_back(std::move(cells));
+  }
+  return table;
+}
+
 }  // namespace
 
 std::vector<Table> measure_tables(const StudyResult& result) {
@@ -101,6 +117,9 @@ std::vector<Table> measure_tables(const StudyResult& result) {
   n = 0;
   for (const Heatmap& map : result.study->heatmaps)
     tables.push_back(heatmap_table(result, map, ++n));
+  n = 0;
+  for (const RunTable& entry : result.study->tables)
+    tables.push_back(run_table(result, entry, ++n));
   return tables;
 }
 

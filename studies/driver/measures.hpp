@@ -1,6 +1,6 @@
 #pragma once
 // What a study draws from its runs beside their own numbers: signals, errors, matched errors,
-// heat maps. Their keys are described in studies/README.md.
+// heat maps, tables of cases. Their keys are described in studies/README.md.
 
 #include "scene/errors.hpp"
 #include "studies/driver/selector.hpp"
@@ -20,6 +20,7 @@ struct Signal {
   double level = 0;            ///< of the period, in the column's unit
   double prominence = 0.05;    ///< of a peak, fraction of the record's range; ours: no source
   std::optional<double> from;  ///< [s]: samples before it do not count; absent: all count
+  std::optional<double> to;    ///< [s]: nor those after it
   Selector selector;
   SourcePosition where;
 };
@@ -63,6 +64,28 @@ struct HeatRow {
   double good = 0, bad = 1;  ///< in `unit`: score 1 and 0
   bool logarithmic = false;
   int digits = 2;
+};
+
+struct TableColumn {
+  std::string label, quantity, unit = "1";
+  Pool over_seeds = Pool::mean;
+  int digits = 3;
+  bool difference = false;  ///< to the line's `against`
+};
+
+struct TableLine {
+  std::string label, source_value;
+  Selector selector;
+  std::optional<double> resolution;
+  std::optional<Selector> against;  ///< one case
+};
+
+/// A line a case (or a resolution of one), a column a pooled quantity.
+struct RunTable {
+  std::string title, note;
+  std::vector<TableColumn> columns;
+  std::vector<TableLine> lines;
+  SourcePosition where;
 };
 
 struct Heatmap {

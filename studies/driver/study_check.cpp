@@ -96,6 +96,16 @@ void check_heatmaps(const Study& study, const std::vector<Case>& all) {
   }
 }
 
+/// Lines of a table are of at least one case, what they are compared with is one.
+void check_tables(const Study& study, const std::vector<Case>& all) {
+  for (const RunTable& table : study.tables)
+    for (const TableLine& line : table.lines) {
+      check_selects(all, line.selector, false, table.where, "table.rows: " + line.label);
+      if (line.against)
+        check_selects(all, *line.against, true, table.where, "table.against: " + line.label);
+    }
+}
+
 }  // namespace
 
 void check_study(const Study& study, const std::vector<Case>& all) {
@@ -105,6 +115,7 @@ void check_study(const Study& study, const std::vector<Case>& all) {
   check_claims(study, all);
   check_errors(study, all);
   check_heatmaps(study, all);
+  check_tables(study, all);
   for (const Signal& signal : study.signals)
     check_selects(all, signal.selector, false, signal.where, "signal");
   for (const Matched& matched : study.matched)

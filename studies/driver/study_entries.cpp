@@ -7,10 +7,30 @@
 namespace concord::studies {
 namespace {
 
+std::optional<Pool> read_over_resolutions(StrictTable& table) {
+  if (!table.node("over_resolutions")) return std::nullopt;
+  return read_pool(table, "over_resolutions");
+}
+
+/// Whether the claim pools seed by seed, then over the resolutions.
+void read_pools(StrictTable& table, Claim& claim) {
+  claim.over_seeds = read_pool(table);
+  claim.over_resolutions = read_over_resolutions(table);
+  if (!claim.over_resolutions) return;
+  if (claim.resolution)
+    table.reject(*table.node("over_resolutions"), "only without `resolution`");
+  if (claim.kind != ClaimKind::value && claim.kind != ClaimKind::ratio &&
+      claim.kind != ClaimKind::minimum)
+    table.reject(*table.node("over_resolutions"),
+                 "only for kind = \"value\", \"ratio\" and \"minimum\"");
+}
+
 void read_other(StrictTable& table, Claim& claim) {
   claim.other = claim.selector;
   claim.other_quantity = claim.quantity;
   claim.other_resolution = claim.resolution;
+  claim.other_over_seeds = claim.over_seeds;
+  claim.other_over_resolutions = claim.over_resolutions;
   const auto* node = table.node("other");
   if (claim.kind == ClaimKind::minimum && node == nullptr) return;
   if (claim.kind != ClaimKind::ratio && claim.kind != ClaimKind::minimum &&
@@ -30,6 +50,8 @@ void read_other(StrictTable& table, Claim& claim) {
   claim.other_quantity = other.text_or("quantity", claim.quantity);
   if (auto resolution = other.optional_number("resolution"))
     claim.other_resolution = resolution;
+  if (other.node("over_seeds")) claim.other_over_seeds = read_pool(other);
+  if (auto pool = read_over_resolutions(other)) claim.other_over_resolutions = pool;
   other.finish();
 }
 
@@ -157,7 +179,7 @@ Claim read_claim(StrictTable table) {
   claim.selector = read_selector(table);
   claim.quantity = table.text("quantity");
   claim.resolution = table.optional_number("resolution");
-  claim.over_seeds = read_pool(table);
+  read_pools(table, claim);
   claim.unit = table.text_or("unit", "1");
   display_factor(claim.unit, claim.where);
   claim.minimum = table.optional_number("min");

@@ -24,6 +24,7 @@ Signal read_signal(StrictTable table);
 ErrorEntry read_error(StrictTable table);
 Matched read_matched(StrictTable table);
 Heatmap read_heatmap(StrictTable table);
+RunTable read_run_table(StrictTable table);
 Plot read_plot(StrictTable table);
 Picture read_picture(StrictTable table);
 
@@ -35,8 +36,8 @@ void check_study(const Study& study, const std::vector<Case>& all);
 Selector read_selector(StrictTable& table);
 /// Key time: "wall_s" (default) or "total".
 WorkTime read_work_time(StrictTable& table);
-/// Key over_seeds: "max" (default), "min" or "mean".
-Pool read_pool(StrictTable& table);
+/// Key over_seeds, or another one: "max" (default), "min", "mean" or "range".
+Pool read_pool(StrictTable& table, const std::string& key = "over_seeds");
 
 /// One of `choices` by its name; `fallback` where the key is absent. Throws InputError for
 /// another word, or for none where there is no fallback.

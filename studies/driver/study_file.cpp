@@ -42,6 +42,8 @@ Study parse_study(const std::filesystem::path& file, bool full) {
     study.matched.push_back(read_matched(entry));
   for (const StrictTable& entry : table.tables("heatmap"))
     study.heatmaps.push_back(read_heatmap(entry));
+  for (const StrictTable& entry : table.tables("table"))
+    study.tables.push_back(read_run_table(entry));
   for (const StrictTable& entry : table.tables("claim"))
     study.claims.push_back(read_claim(entry));
   for (const StrictTable& entry : table.tables("plot")) study.plots.push_back(read_plot(entry));

@@ -82,6 +82,10 @@ struct Claim {
   std::string other_quantity;
   std::optional<double> other_resolution;
   Pool over_seeds = Pool::max;
+  std::optional<Pool> over_resolutions;  ///< of what `over_seeds` makes of each; absent: all
+                                         ///< runs are pooled at once
+  std::optional<Pool> other_over_seeds;  ///< of the denominator; absent: as `over_seeds`
+  std::optional<Pool> other_over_resolutions;
   std::string unit = "1";                  ///< of min, max and the shown value
   std::optional<double> minimum, maximum;  ///< in `unit`
   std::string setting;  ///< minimum: the setting whose value at the minimum is bounded
@@ -123,8 +127,11 @@ struct Plot {
   bool change = false;                ///< history: value minus the first one
   std::optional<double> change_from;  ///< history: minus the one at this time [s], from then on
   bool norm = false;                  ///< history: length of the vector of the columns
-  bool log = false;                   ///< history, curve: magnitudes on a logarithmic axis
-  std::string x, y;                   ///< curve: columns of history.csv
+  std::vector<std::string>
+      share_of;  ///< history: sum of the columns over that of these at the end
+  std::optional<double> rate_over;  ///< history: change over a window of this width [s]
+  bool log = false;                 ///< history, curve: magnitudes on a logarithmic axis
+  std::string x, y;                 ///< curve: columns of history.csv
   std::string x_label, y_label, label;
   std::optional<double> x_scale, y_scale;
   std::vector<Baseline> baseline;
@@ -178,6 +185,7 @@ struct Study {
   std::vector<ErrorEntry> errors;
   std::vector<Matched> matched;
   std::vector<Heatmap> heatmaps;
+  std::vector<RunTable> tables;
   std::vector<Claim> claims;
   std::vector<Plot> plots;
   std::vector<Picture> pictures;

@@ -163,8 +163,8 @@ json study_json(const StudyResult& result) {
               {"verdict", result.passed() ? "pass" : "fail"}};
   if (study.balance_tolerance) object["balance_tolerance"] = *study.balance_tolerance;
   if (result.interrupted) object["interrupted"] = true;
-  for (const char* list :
-       {"claims", "rows", "fits", "references", "matched", "heatmap", "plots", "pictures"})
+  for (const char* list : {"claims", "rows", "fits", "references", "matched", "heatmap",
+                           "tables", "plots", "pictures"})
     object[list] = json::array();
   for (const ClaimResult& claim : result.claims) object["claims"].push_back(claim_json(claim));
   for (const Row& row : result.rows) object["rows"].push_back(row_json(result, row));
@@ -175,6 +175,8 @@ json study_json(const StudyResult& result) {
     object["matched"].push_back(matched_json(result, matched));
   for (const Heatmap& map : study.heatmaps)
     object["heatmap"].push_back(heatmap_json(result, map));
+  for (const RunTable& table : study.tables)
+    object["tables"].push_back(run_table_json(result, table));
   for (const Plot& plot : study.plots) {
     object["plots"].push_back(plot_json(study, plot));
     if (plot.kind == "work_precision") put_work_precision(object["plots"].back(), result, plot);

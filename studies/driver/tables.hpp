@@ -21,7 +21,7 @@ struct Table {
 /// measure_tables; those without a line are left out.
 std::vector<Table> tables_of(const StudyResult& result);
 
-/// work-precision-N, matched-N, matched-N-sentences and heatmap-N.
+/// work-precision-N, matched-N, matched-N-sentences, heatmap-N and table-N.
 std::vector<Table> measure_tables(const StudyResult& result);
 
 }  // namespace concord::studies

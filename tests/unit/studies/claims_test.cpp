@@ -38,6 +38,22 @@ TEST(Claims, PoolOverSeeds) {
   EXPECT_NEAR(*judge_one(study, all, rows).measured, 1.2 / 16, 1e-15);
 }
 
+// Errors are (1 + seed/10)/N^2: means 1.15/N^2, ranges .1/N^2.
+TEST(Claims, PoolOverSeedsThenOverResolutions) {
+  Study study = sample_study();
+  const auto rows = sample_rows(study);
+  Claim claim = value_claim(4, Pool::mean);
+  claim.resolution.reset();
+  claim.over_resolutions = Pool::range;
+  EXPECT_NEAR(*judge_one(study, claim, rows).measured, 1.15 * (1. / 16 - 1. / 256), 1e-15);
+  claim.kind = ClaimKind::ratio;
+  claim.other_quantity = claim.quantity;
+  claim.other_over_seeds = Pool::range;
+  claim.other_over_resolutions = Pool::mean;
+  EXPECT_NEAR(*judge_one(study, claim, rows).measured,
+              11.5 * (1. / 16 - 1. / 256) / ((1. / 16 + 1. / 64 + 1. / 256) / 3), 1e-12);
+}
+
 TEST(Claims, BoundsAreInTheClaimsUnit) {
   Study study = sample_study();
   const auto rows = sample_rows(study);

@@ -55,6 +55,42 @@ TEST_F(StudyFile, ReadsSignals) {
   expect_error(one_case + "[[signal]]\nname = \"Tip z\"\n", 9, "name");
 }
 
+TEST_F(StudyFile, ReadsTables) {
+  const std::string table = one_case + "[[table]]\ntitle = \"T\"\n";
+  const std::string columns =
+      "columns = [{ label = \"tip\", quantity = \"quantities.tip\" }]\n";
+  const Study study = read(table + columns +
+                           "rows = [{ label = \"a\", method = \"delaunay\", resolution = 4, "
+                           "against = { method = \"delaunay\" } }]\n");
+  EXPECT_EQ(study.tables.at(0).columns.at(0).over_seeds, Pool::mean);
+  EXPECT_FALSE(study.tables[0].columns[0].difference);
+  EXPECT_EQ(study.tables[0].lines.at(0).resolution, 4);
+  EXPECT_EQ(study.tables[0].lines[0].against->method, "delaunay");
+  expect_error(table, 8, "columns");
+  expect_error(table + columns, 8, "rows");
+  expect_error(table + columns + "rows = [{ label = \"a\", method = \"fem\" }]\n", 8, "table");
+  expect_error(table + "columns = [{ label = \"x\", quantity = \"q\", digits = 0 }]\n", 10,
+               "digits");
+}
+
+TEST_F(StudyFile, PoolsOfClaims) {
+  const std::string claim = one_case +
+                            "[[claim]]\nid = \"c\"\nstatement = \"s\"\nsource = \"t\"\n"
+                            "kind = \"ratio\"\nquantity = \"quantities.tip\"\nmax = 1\n";
+  const std::string pools = "over_seeds = \"mean\"\nover_resolutions = \"range\"\n";
+  const Claim same =
+      read(claim + pools + "other = { quantity = \"quantities.tip\" }\n").claims.at(0);
+  EXPECT_EQ(same.other_over_seeds, Pool::mean);
+  EXPECT_EQ(same.other_over_resolutions, Pool::range);
+  const Claim own =
+      read(claim + pools + "other = { over_seeds = \"range\", over_resolutions = \"mean\" }\n")
+          .claims.at(0);
+  EXPECT_EQ(own.over_seeds, Pool::mean);
+  EXPECT_EQ(own.other_over_seeds, Pool::range);
+  EXPECT_EQ(own.other_over_resolutions, Pool::mean);
+  expect_error(claim + pools + "resolution = 4\nother = {}\n", 16, "over_resolutions");
+}
+
 TEST_F(StudyFile, ReadsErrors) {
   const std::string two =
       one_case + "[[case]]\nscene = \"block\"\nmethod = \"fem\"\nresolutions = [4]\n";
