@@ -7,7 +7,7 @@ from .balance import SIGN, WORDS, broken
 from .digits import engineering, exact, pretty, text, ticks
 from .kinds import is_static
 from .loading import number
-from .palette import RED_BLUE, VIRIDIS
+from .palette import stops
 from .quantities import field_name
 
 OFF = 0.01  # of an instant: a frame that is farther from it tells its own time
@@ -91,7 +91,7 @@ def bar(job):
         marks.append((round((value - low * factor) / ((high - low) * factor), 4),
                       exact(float(f"{value:.6g}") + 0.0)))
     return {"name": name, "unit": unit or scale_text, "marks": marks,
-            "stops": RED_BLUE if job["diverging"] else VIRIDIS,
+            "stops": stops(job["color"], job["diverging"]),
             "low": pretty(low * factor), "high": pretty(high * factor), "beyond": job["beyond"]}
 
 

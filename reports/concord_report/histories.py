@@ -1,5 +1,6 @@
 """Time series from the runs' history.csv: the columns, read."""
 
+import bisect
 import csv
 import math
 
@@ -78,6 +79,28 @@ def _read(study, row, column, against=None):
     if not found or not found[0]:
         return None
     return [(x, v) for x, v in zip(*found) if number(x) is not None and number(v) is not None]
+
+
+def share_of(study, row, columns, whole):
+    """(times, values) of the sum of `columns` over the last sum of the columns `whole`, thinned. None when
+    the run has not all of them, or the whole is 0."""
+    parts, all_ = ([_read(study, row, name) for name in names] for names in (columns, whole))
+    if not all(parts) or not all(all_) or len({len(p) for p in parts}) > 1:
+        return None
+    end = sum(part[-1][1] for part in all_)
+    if not end:
+        return None
+    return thinned([t for t, _ in parts[0]], [sum(v) / end for v in zip(*([v for _, v in part] for part in parts))])
+
+
+def rate(x, y, over):
+    """(times, change of y over a window of this width around the time, divided by it); linear between
+    samples, only where the whole window lies in the record."""
+    def at(t):
+        k = min(max(bisect.bisect_left(x, t), 1), len(x) - 1)
+        return y[k - 1] + (y[k] - y[k - 1]) * (t - x[k - 1]) / (x[k] - x[k - 1])
+    inside = [t for t in x if x[0] <= t - over / 2 and t + over / 2 <= x[-1]] if len(x) > 1 else []
+    return inside, [(at(t + over / 2) - at(t - over / 2)) / over for t in inside]
 
 
 def series_of(study, row, columns, change_from=None, change=False):

@@ -28,7 +28,7 @@ class Study:
         return self.data.get(key) or []
 
 
-LISTS = ("claims", "rows", "fits", "references", "plots", "pictures", "matched", "heatmap")
+LISTS = ("claims", "rows", "fits", "references", "plots", "pictures", "matched", "heatmap", "tables")
 TEXTS = ("name", "title", "question", "source", "paper_statement", "mode", "verdict")
 VERDICTS = ("pass", "fail")
 
@@ -133,6 +133,9 @@ ALLOWED = {
     ("plots", "change_from"): ("a time in s", lambda v: number(v) is not None),
     ("plots", "resolutions"): ("a list of numbers",
                                lambda v: isinstance(v, list) and None not in map(number, v)),
+    ("plots", "rate_over"): ("a time in s, above 0", lambda v: number(v) is not None and v > 0),
+    ("plots", "share_of"): ("a list of columns of history.csv",
+                            lambda v: isinstance(v, list) and v and all(isinstance(c, str) for c in v)),
     ("plots", "columns"): ("a list of columns of history.csv",
                            lambda v: isinstance(v, list) and v and all(isinstance(c, str) for c in v)),
     ("pictures", "times"): ("a list of times in s",

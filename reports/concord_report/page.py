@@ -4,7 +4,7 @@ import re
 from datetime import datetime, timezone
 from pathlib import Path
 
-from . import (balance, captions, claims, films, frames, fronts, heatmaps, histories, matched, outputs, pictures, plots, quantities,
+from . import (balance, captions, case_tables, claims, films, frames, fronts, heatmaps, histories, matched, outputs, pictures, plots, quantities,
                signals, tables)
 from .cases import cases_of, variant_text
 from .loading import study_verdict, verdict
@@ -150,7 +150,7 @@ def _study_view(study, cases, jobs, store, warnings, out):
         "claims": sorted(map(_claim_view, study.claims), key=lambda c: c["verdict"] != "fail"), "plots": drawn,
         "key": [{"case": c.index, "label": c.label, "swatch": swatch(c.method, c.style)}
                 for c in cases if c.index in shown],
-        "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": compared,
+        "chosen": case_tables.tables_of(study), "heatmaps": heatmaps.maps_of(study, slug(study.name), out), "matched": compared,
         "plot_note": " ".join(filter(None, (_said_once([p for p in drawn if p["kind"] == k]) for k in sorted(same - {"missing"})))),
         "matched_note": _said_once(compared),
         "groups": groups, "missing": missing, "tables": _tables(study, cases),

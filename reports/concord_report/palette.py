@@ -34,6 +34,15 @@ VIRIDIS = ("#440154 #48186a #472d7b #424086 #3b528b #33638d #2c728e #26828e #219
            "#28ae80 #3fbc73 #5ec962 #84d44b #addc30 #d8e219 #fde725").split()
 RED_BLUE = ("#053061 #175290 #2a71b2 #3f8ec0 #6bacd1 #9bc9e0 #c2ddec #e0ecf3 #f7f6f6 #fbe5d8 "
             "#fbccb4 #f5aa89 #e48066 #d05548 #ba2832 #930e26 #67001f").split()
+# Whole is pale, broken is dark: cracks are what one looks for.
+BROKEN = ("#2d0a1f #440e22 #5c1325 #731828 #8a1c2b #9c2b2c #af3a2d #c2492e #d4582f "
+          "#db6f43 #e28656 #e89c6a #efb37e #eac7a7 #e5dbd0 #dce2e5 #cfdfed").split()
+WHOLE_OR_BROKEN = "intact_share"
+
+
+def stops(color, diverging):
+    """The colours of a field, from its low end to its high end."""
+    return BROKEN if color == WHOLE_OR_BROKEN else RED_BLUE if diverging else VIRIDIS
 
 
 def look(method):

@@ -13,7 +13,7 @@ from pathlib import Path
 from . import cache, films, frames, voronoi_cells
 from .cases import chosen
 from .loading import number
-from .palette import RED_BLUE, VIRIDIS
+from .palette import stops
 
 SHARED_UP_TO = 8.0  # pictures share a scale while their largest values differ by at most this factor
 SIGNS = 0.3  # of the larger end: a smaller one of the other sign does not make a scale that is white at 0
@@ -233,12 +233,11 @@ def _limits(low, high, wanted=None, difference=False):
 
 
 def _render_job(job):
-    stops = RED_BLUE if job["diverging"] else VIRIDIS
     more = {"long": job["long"]} if job["plane"] else {"wide": WIDE[job["whole"] is not None]}
     if job["film"]:
         more = {"film": job["film"], "long" if job["plane"] else "wide": 2 * films.WIDE, "budget": job["budget"]}
     return {k: job[k] for k in ("path", "color", "scale", "limits", "view", "h", "particles", "flat", "plate", "draw", "cells")} \
-        | {"stops": stops, **more}
+        | {"stops": stops(job["color"], job["diverging"]), **more}
 
 
 def _key(job):

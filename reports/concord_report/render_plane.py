@@ -5,8 +5,9 @@ method computes is not smoothed."""
 import numpy as np
 
 from . import frames, plane_cells, voronoi_cells
+from .palette import WHOLE_OR_BROKEN
 
-CRACKS = "intact_share"  # a field that only bodies have whose bonds can break
+CRACKS = WHOLE_OR_BROKEN  # a field that only bodies have whose bonds can break
 GREY = "#9e9e9e"
 PALE = "#b7cfe6"  # of bodies without a field
 EDGES = (0.05, 0.06, 0.08, 0.28)

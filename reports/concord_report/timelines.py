@@ -4,12 +4,13 @@ from . import curves as lines
 from .balance import broken
 from .cases import chosen, variant_text
 from .digits import pretty
-from .histories import series_of
+from .histories import rate, series_of, share_of
 from .kinds import capital, kind, scaled, time_name, times
 from .loading import number
 from .palette import BALANCES, COLUMNS, DASHES
 from .quantities import name_and_unit
 
+FEW = 3  # runs that dashes tell apart
 MOST_RUNS = 12  # of one column; beyond that only the finest level of each case is drawn
 MEANT = {"J": "energy", "kg m/s": "momentum", "kg m²/s": "angular momentum", "N": "force", "m": "length"}
 
@@ -17,12 +18,13 @@ MEANT = {"J": "energy", "kg m/s": "momentum", "kg m²/s": "angular momentum", "N
 @kind("history")
 def history(study, cases, plot):
     columns = plot.get("columns") or [plot["quantity"]]
-    units = {name_and_unit(column)[1] for column in columns}
+    units = {_unit(name_and_unit(column)[1], plot) for column in columns}
     if len(units) > 1:
         return f"the columns {', '.join(columns)} have several units ({', '.join(sorted(units))})"
-    several = len(columns) > 1 and not plot.get("norm")
+    one = plot.get("norm") or plot.get("share_of")  # of several columns one line
+    several = len(columns) > 1 and not one
     runs, note = _picked(chosen(cases, plot), plot, several)
-    wanted = columns if several else [tuple(columns) if plot.get("norm") else columns[0]]
+    wanted = columns if several else [tuple(columns) if one else columns[0]]
     found = _several_columns(study, runs, wanted, plot) if several else _one_column(study, runs, wanted[0], plot)
     missing = [c for c in columns if several and not any(line["column"] == c for line in found)]
     found += [line for entry in lines.entries(plot, "baseline") for line in _compared(study, cases, entry, wanted, plot)]
@@ -57,12 +59,13 @@ def _axes(plot, found, rows, columns, unit):
     name = _shared_name(columns)
     if plot.get("change") or number(plot.get("change_from")) is not None:
         name = f"change of {name}"
+    name = f"share of {name}" if plot.get("share_of") else f"rate of {name}" if plot.get("rate_over") else name
     if plot.get("log"):
         name = f"size of {name}" if not name.startswith("change") else f"size of the {name}"
     ends = "; ".join(f"{c['label']} from {pretty(min(c['y']))} to {pretty(max(c['y']))}" for c in found)
     ends += f" {unit}" if unit else ""
     return {"scales": ["linear", "log" if plot.get("log") else "linear"], "xlabel": f"{over} [{seconds}]" if seconds else over,
-            "ylabel": f"{name} [{unit}]" if unit else name, "triangles": [],
+            "ylabel": plot.get("y_label") or (f"{name} [{unit}]" if unit else name), "triangles": [],
             "curves": [{k: v for k, v in c.items() if k != "column"} for c in found],
             "title": plot.get("title") or f"{capital(name)} over {over}",
             "alt": f"Plot of {name} over {over}. Ranges: {ends}."}
@@ -96,20 +99,38 @@ def _picked(cases, plot, several=False):
 
 def _line(study, case, level, column, plot, **more):
     """The column, or the length of the vector of several, of the level's first run that has it, or None."""
-    start, change = number(plot.get("change_from")), plot.get("change")
-    row, series = next(((r, s) for r in level.rows if (s := series_of(study, r, column, start, change))), (None, None))
+    row, series = next(((r, s) for r in level.rows if (s := _series(study, r, column, plot))), (None, None))
     if not series:
         return None
     return {"case": case.index, "method": case.method, "style": case.style, "x": series[0], "y": series[1],
             "low": None, "high": None, "slope": None, "broken": [broken(row)], "row": row, "column": column, **more}
 
 
+def _series(study, row, column, plot):
+    """What the plot makes of a run's column or columns, or None."""
+    if plot.get("share_of"):
+        return share_of(study, row, column, plot["share_of"])
+    series = series_of(study, row, column, number(plot.get("change_from")), plot.get("change"))
+    over = number(plot.get("rate_over"))
+    return series if not series or over is None else rate(*series, over)
+
+
+def _unit(unit, plot):
+    return "" if plot.get("share_of") else f"{unit}/s" if plot.get("rate_over") else unit
+
+
 def _one_column(study, runs, column, plot):
-    """Hue by method; dashes by variant, or by level where there is but one case."""
-    alone = len({case.index for case, *_ in runs}) == 1
+    """Hue by method; dashes by variant, or by level where there is but one case. Many variants of one method, a run
+    each, have hues of their own: dashes alone do not tell so many apart."""
+    order = list(dict.fromkeys(case.index for case, *_ in runs))
+    alone = len(order) == 1
+    own = len(order) == len(runs) > FEW and len({case.method for case, *_ in runs}) == 1
     out = []
     for case, level, rank, count in runs:
         more = {"dash": rank, "fade": 1 + 0.3 * rank} if alone and count > 1 else {}
+        if own:
+            place = order.index(case.index)
+            more = {"hue": COLUMNS[place % len(COLUMNS)], "dash": place // len(COLUMNS)}
         line = _line(study, case, level, column, plot, rank=rank, label=_run(case, level, count > 1), **more)
         out += [line] if line else []
     return out

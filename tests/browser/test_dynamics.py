@@ -12,7 +12,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent.parent / "reports")]
 
 import fixture  # noqa: E402  (needs the paths above)
 import numpy as np  # noqa: E402
-from concord_report import cache, captions, cases, frames, page, pictures, plots, solid_cells  # noqa: E402
+from concord_report import cache, captions, cases, frames, histories, page, pictures, plots, solid_cells  # noqa: E402
 from test_figures import drawing, row, study  # noqa: E402
 
 
@@ -52,6 +52,29 @@ class Histories(unittest.TestCase):
         spec = self.spec(quantity="internal_energy_J", change=True, resolutions=[4], method="fem")
         self.assertEqual(spec["curves"][0]["y"], [0, -3, -6, -9])
         self.assertTrue(spec["ylabel"].startswith("change of"))
+
+    def test_many_variants_of_one_method_have_hues_of_their_own(self):
+        run = self.rows[1]["run"]
+        self.rows = [row("cbm", f"Gf {k}", None, resolution=6, particles=9, dt=0.1, run=run) for k in range(5)]
+        spec = self.spec(quantity="tip_z_m")
+        self.assertEqual([len({c["hue"] for c in spec["curves"]}), {c["dash"] for c in spec["curves"]}], [5, {0}])
+        self.rows = self.rows[:3]
+        self.assertNotIn("hue", self.spec(quantity="tip_z_m")["curves"][0])
+
+    def test_share_of_the_total_at_the_end(self):
+        spec = self.spec(columns=["kinetic_energy_J"], share_of=["kinetic_energy_J", "internal_energy_J"], resolutions=[4], method="fem",
+                         y_label="share")
+        self.assertEqual([round(y, 12) for y in spec["curves"][0]["y"]], [0, round(1 / 3, 12), round(2 / 3, 12), 1])
+        self.assertEqual(spec["ylabel"], "share")
+        both = self.spec(columns=["kinetic_energy_J", "internal_energy_J"], share_of=["kinetic_energy_J"], resolutions=[4], method="fem")
+        self.assertEqual([len(both["curves"]), both["curves"][0]["y"]], [1, [1, 1, 1, 1]])
+        self.assertIsInstance(self.spec(columns=["kinetic_energy_J"], share_of=["gone_J"]), str)
+
+    def test_rate_is_the_change_over_a_window_inside_the_record(self):
+        spec = self.spec(quantity="kinetic_energy_J", rate_over=1.5, resolutions=[4], method="fem")
+        self.assertEqual([spec["curves"][0]["x"], spec["curves"][0]["y"]], [[1, 2], [3, 3]])
+        self.assertEqual(spec["ylabel"], "rate of kinetic energy [J/s]")
+        self.assertEqual(histories.rate([0, 1, 2, 3], [0, 0, 4, 4], 2), ([1, 2], [2, 2]))
 
     def test_every_density_beside_a_run_to_compare_with(self):
         spec = self.spec(quantity="kinetic_energy_J", method="delaunay",

@@ -16,8 +16,8 @@ sys.path[:0] = [str(HERE), str(REPORTS)]
 
 import fixture  # noqa: E402  (needs the paths above)
 import fixture_work  # noqa: E402
-from concord_report import cases, digits, fronts, heatmaps, matched, outputs, plots, quantities, signals, tables  # noqa: E402
-from concord_report.loading import load_study  # noqa: E402
+from concord_report import case_tables, cases, digits, fronts, heatmaps, matched, outputs, plots, quantities, signals, tables  # noqa: E402
+from concord_report.loading import Study, load_study  # noqa: E402
 from test_figures import drawing, row, study  # noqa: E402
 
 
@@ -159,6 +159,32 @@ class Signals(Fixture):
 
     def test_no_table_without_signals(self):
         self.assertIsNone(signals.signals_table(cases.cases_of(study([row("fem", "", 1.0)]))))
+
+
+class ChosenCases(unittest.TestCase):
+    def setUp(self):
+        cell = lambda value, runs=1, **more: {"value": value, "runs": runs, **more}  # noqa: E731
+        entry = {"title": "Choices", "note": "One at a time.",
+                 "columns": [{"label": "arrival", "unit": "us", "digits": 4}, {"label": "change", "unit": "us", "digits": 2, "difference": True}],
+                 "rows": [{"label": "base", "source_value": "102 µs", "cells": [cell(100.25, 5), cell(None, 0)]},
+                          {"label": "slit", "cells": [cell(131.5), cell(31.25)]},
+                          {"label": "slides", "cells": [cell(97.0), cell(-3.25, balance="does not close")]}]}
+        one = Study("s", Path("."), {"name": "s", "tables": [entry, {"title": "Empty", "columns": [{"label": "x"}],
+                                                                             "rows": [{"label": "a", "cells": [cell(None, 0)]}]}]})
+        self.table, self.empty = case_tables.tables_of(one)
+
+    def test_a_line_a_case_with_signs_on_differences(self):
+        self.assertEqual([c["label"] for c in self.table["columns"]], ["", "source", "arrival [µs]", "change [µs]", "runs"])
+        texts = [[cell["text"].strip("\u2007\u2008") for cell in row] for row in self.table["rows"]]
+        self.assertEqual(texts[0], ["base", "102 µs", "100.2", digits.DASH, "5"])
+        self.assertEqual(texts[1][3], "+31")
+        self.assertEqual(texts[2][3], "\u22123.2")
+
+    def test_notes_tell_runs_that_do_not_balance_and_empty_columns_go(self):
+        self.assertTrue(self.table["note"].startswith("One at a time. "))
+        self.assertGreater(len(self.table["note"]), 20)
+        self.assertEqual([c["label"] for c in self.empty["columns"]], [""])
+
 
 
 class Heatmaps(Fixture):
