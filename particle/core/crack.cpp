@@ -129,6 +129,7 @@ void CrackTip::add(const DeadSimplex& dead) {
   double foremost = (m_body.centroid(dead.simplex) - m_start.tip).dot(m_start.direction);
   for (const Index vertex : vertices)
     foremost = std::max(foremost, m_foremost[m_groups.find(vertex)]);
+  if (dead.t != before_start && m_root < 0) start_at_particle();
   if (dead.t == before_start) {
     if (m_root < 0) m_root = vertices[0];
     foremost = std::max(foremost, m_foremost[m_groups.find(m_root)]);
@@ -140,6 +141,20 @@ void CrackTip::add(const DeadSimplex& dead) {
   m_foremost[group] = foremost;
   if (dead.t != before_start && connected(dead.simplex))
     m_advance = std::max(m_advance, foremost);
+}
+
+/// A pre-crack that took no triangle is a slit of the mesh: the triangles around the particle
+/// at its tip stand for those that would be dead.
+void CrackTip::start_at_particle() {
+  const auto distance = [&](Index a) { return (m_body.X[a] - m_start.tip).squaredNorm(); };
+  m_root = 0;
+  for (Index a = 1; a < static_cast<Index>(m_body.X.size()); ++a) {
+    if (distance(a) < distance(m_root)) m_root = a;
+  }
+  for (const auto& vertices : m_body.triangles) {
+    if (std::find(vertices.begin(), vertices.end(), m_root) == vertices.end()) continue;
+    for (const Index vertex : vertices) m_groups.join(m_root, vertex);
+  }
 }
 
 bool CrackTip::connected(Index triangle) {

@@ -48,11 +48,13 @@ class CrackTip {
   bool connected(Index triangle);
 
  private:
+  void start_at_particle();
+
   const CrackBody& m_body;
   CrackStart m_start;
   Groups m_groups;
   std::vector<double> m_foremost;  ///< of a group, at its representative
-  Index m_root = -1;               ///< a vertex of the pre-crack
+  Index m_root = -1;               ///< a vertex of the pre-crack, or at its tip
   double m_advance = 0;
 };
 

@@ -122,6 +122,7 @@ std::map<std::string, double> CrackQuantities::quantities() {
   q["degree_of_branching"] = m_area / (m_l * m_ligament);
   const double c_R = rayleigh_speed(m_problem.material, m_problem.dimension);
   q["rayleigh_speed"] = c_R;
+  if (!m_advances.empty()) q["crack_start"] = m_advances.front().first;
   if (const double v = mean_speed(); std::isfinite(v)) {
     q["crack_speed"] = v;
     q["crack_speed_over_rayleigh"] = v / c_R;

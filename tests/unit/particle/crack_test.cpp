@@ -106,6 +106,20 @@ TEST(CrackPattern, Straight) {
   EXPECT_NEAR(dead_area(pattern.body, pattern.dead), 30 * height, 2 * height);
 }
 
+// The pre-crack of a mesh with a slit takes no triangle: the particle at its tip stands for it.
+TEST(CrackPattern, FromASlit) {
+  Pattern pattern;
+  pattern.dead.clear();
+  pattern.cut(from(tip, 5, 90), from(tip, 8, 90));  // elsewhere
+  EXPECT_EQ(pattern.advance(), 0);
+  EXPECT_EQ(pattern.paths().main_length, 0);
+  pattern.cut(tip, from(tip, 30, 0));
+  EXPECT_NEAR(pattern.advance(), 30, spacing);
+  const CrackPaths paths = pattern.paths();
+  EXPECT_NEAR(paths.main_length, 30, 30 * wiggle);
+  EXPECT_TRUE(paths.branch_lengths.empty());
+}
+
 TEST(CrackPattern, ThroughTheBodyMakesTwoPieces) {
   Pattern pattern;
   pattern.cut(tip, tip + Vec3(columns, 0, 0));
