@@ -2,16 +2,13 @@
 
 #include "particle/core/features.hpp"
 
-#include <atomic>
-#include <cmath>
-
 namespace concord::particle::delaunay {
 
 /// What one worker's sweep needs beside the model: windows over particles, buffers.
 class DelaunayModel::Space {
  public:
   Space(const Bonds& bonds, const Reach& reach, int dim, bool contact, bool viscous)
-      : buffer(bonds, dim, contact), m_mask(reach.window(2) - 1) {
+      : buffer(bonds.begin, dim, contact), m_mask(reach.window(2) - 1) {
     const std::size_t size = reach.window(2) * (dim == 3 ? record_size<3> : record_size<2>);
     m_H.assign(size, 0.0);
     m_P = m_H;
@@ -101,41 +98,32 @@ template <int Dim> class DelaunayModel::Sweep {
       } else {
         gradients_to(end);
       }
-      // Only the part's own particles keep a plastic trial state.
-      const Index own = std::clamp(m_part.first, m_stresses, end),
-                  beyond = std::clamp(m_part.last, own, end);
-      stress(m_stresses, own, false);
-      stress(own, beyond, true);
-      stress(beyond, end, false);
+      by_ownership(m_part, m_stresses, end,
+                   [&](Index from, Index to, bool own) { stress(from, to, own); });
       if (viscous()) add_viscous_stress(m_stresses, end);
       m_stresses = end;
     }
   }
 
+  /// Only the part's own particles keep a plastic trial state.
   void stress(Index first, Index last, bool keep) {
-    if (first == last) return;
     StressConstants c = m_model.m_constitution.kernel().constants;
     c.keep_trial = keep;
     const double* inverse_V = m_model.m_inverse_V.data();
     const Index bad = with_law(m_model.m_constitution.kernel().law, [&](auto law) {
-      return contact() ? stress_rows<Dim, decltype(law)::value, true>(c, first, last, inverse_V,
-                                                                      m_H, m_P)
-                       : stress_rows<Dim, decltype(law)::value, false>(c, first, last,
-                                                                       inverse_V, m_H, m_P);
+      return contact() ? stresses<Dim, decltype(law)::value, true>(c, first, last, inverse_V,
+                                                                   m_H, m_P)
+                       : stresses<Dim, decltype(law)::value, false>(c, first, last, inverse_V,
+                                                                    m_H, m_P);
     });
     if (m_bad < 0) m_bad = bad;
   }
 
-  /// P += J sigma_visc F^-T (62) with rho J = rho0: (linear + quadratic |tr d|) d cof F / J, d
-  /// = sym(dF/dt F^-1) (35), (36).
+  /// P += J sigma_visc F^-T (62).
   void add_viscous_stress(Index first, Index last) {
     const Viscosity& viscosity = *m_model.m_viscosity;
     for (Index a = first; a < last; ++a) {
-      const Mat3 inverse = (Mat3::Identity() + tensor_of<Dim>(m_H.at(a))).inverse();
-      const Mat3 l = tensor_of<Dim>(m_rate.at(a)) * inverse;
-      const Mat3 d = 0.5 * (l + l.transpose());
-      const Mat3 P = (viscosity.linear + viscosity.quadratic * std::abs(d.trace())) * d *
-                     inverse.transpose();
+      const Mat3 P = viscosity.stress(tensor_of<Dim>(m_H.at(a)), tensor_of<Dim>(m_rate.at(a)));
       for (int j = 0; j < Dim; ++j) {
         for (int i = 0; i < Dim; ++i) m_P.at(a)[j * Lanes<Dim>::stride + i] += P(i, j);
       }
@@ -158,47 +146,32 @@ DelaunayModel::DelaunayModel(const Body& body, const scene::Problem& problem,
                              const Parameters& parameters, const Executor& executor)
     : ForceModel(body, problem), m_contact(parameters.xi_n > 0 || parameters.xi_t > 0),
       m_factors{parameters.xi_n * problem.material.E, parameters.xi_t * problem.material.mu},
-      m_bonds(make_bonds(body, m_contact, executor)), m_reach(m_bonds.begin, m_bonds.other) {
+      m_bonds(make_bonds(body, m_contact, executor)), m_reach(m_bonds.begin, m_bonds.other),
+      m_viscosity(
+          artificial_viscosity(parameters.c1, parameters.c2, problem.material, body.h_min)) {
   m_inverse_V.resize(body.n);
   for (Index a = 0; a < body.n; ++a) m_inverse_V[a] = 1 / body.V[a];
-  if (parameters.c1 > 0 || parameters.c2 > 0) {
-    const double rho0 = problem.material.rho0,
-                 h = body.h_min;  // Eq. (61): h is the shortest branch vector
-    m_viscosity =
-        Viscosity{rho0 * parameters.c1 * problem.material.longitudinal_wave_speed() * h,
-                  rho0 * parameters.c2 * h * h};
-  }
-  make_spaces(executor.threads());
+  provide_spaces(executor);
 }
 
 DelaunayModel::~DelaunayModel() = default;
 
-void DelaunayModel::make_spaces(int workers) {
-  while (m_spaces.size() < static_cast<std::size_t>(workers))
-    m_spaces.push_back(std::make_unique<Space>(m_bonds, m_reach, m_body.dim, m_contact,
-                                               m_viscosity.has_value()));
+void DelaunayModel::provide_spaces(const Executor& executor) {
+  m_spaces.provide(executor.threads(), [&] {
+    return std::make_unique<Space>(m_bonds, m_reach, m_body.dim, m_contact,
+                                   m_viscosity.has_value());
+  });
 }
 
 template <int Dim>
 void DelaunayModel::forces_in(std::span<const ParticleRange> parts, const double* u,
                               const double* v, double* f, const Executor& executor) {
-  const int workers = executor.threads();
-  make_spaces(workers);
-  std::atomic<Index> first_bad{m_body.n};
-  const auto sweep = [&](Space& space, ParticleRange part) {
-    const Index bad = Sweep<Dim>(*this, space, u, v).forces(part, f);
-    Index known = first_bad.load();
-    while (bad >= 0 && bad < known && !first_bad.compare_exchange_weak(known, bad)) continue;
-  };
-  if (workers == 1) {
-    for (const ParticleRange& part : parts) sweep(*m_spaces[0], part);
-  } else {
-    const auto dealt = deal(parts, workers);
-    executor.for_each(dealt.size(), [&](std::size_t w) {
-      for (const ParticleRange& part : dealt[w]) sweep(*m_spaces[w], part);
-    });
-  }
-  if (first_bad < m_body.n) throw BadState{"det F", first_bad};
+  provide_spaces(executor);
+  FirstBad bad;
+  m_spaces.for_parts(parts, executor, [&](Space& space, ParticleRange part) {
+    bad.tell(Sweep<Dim>(*this, space, u, v).forces(part, f));
+  });
+  bad.check();
 }
 
 void DelaunayModel::forces_of(std::span<const ParticleRange> parts, std::span<const double> u,
@@ -225,23 +198,18 @@ ParticleRange DelaunayModel::reach(ParticleRange part) const {
 }
 
 double DelaunayModel::viscous_damping_ratio(double omega_max) const {
-  // Damping c = (linear/rho0) k^2 against stiffness c_p^2 k^2 on the highest mode: ratio =
-  // linear w / (2 rho0 c_p^2).
   if (!m_viscosity) return 0;
-  const LameConstants& lame = m_constitution.kernel().constants.lame;
-  return 0.5 * m_viscosity->linear * omega_max / (lame.lambda + 2 * lame.mu);
+  return m_viscosity->damping_ratio(m_constitution.kernel().constants.lame, omega_max);
 }
 
 /// use(first, last, H) for chunks of rows, on all threads; chunks start at multiples of
 /// Reach::chunk.
 template <int Dim, class Use>
 void DelaunayModel::visit_gradients(const double* u, const Executor& executor, const Use& use) {
-  make_spaces(executor.threads());
+  provide_spaces(executor);
   const ParticleRange all{0, m_body.n};
-  const auto dealt = deal({&all, 1}, executor.threads());
-  executor.for_each(dealt.size(), [&](std::size_t w) {
-    for (const ParticleRange& part : dealt[w])
-      Sweep<Dim>(*this, *m_spaces[w], u, u).gradients(part, use);
+  m_spaces.for_parts({&all, 1}, executor, [&](Space& space, ParticleRange part) {
+    Sweep<Dim>(*this, space, u, u).gradients(part, use);
   });
 }
 
@@ -258,54 +226,37 @@ void DelaunayModel::gradients(std::span<const double> u, std::span<Mat3> H) {
 
 /// Contact energies (56) of the bonds in row a.
 template <int Dim>
-double DelaunayModel::contact_energies(const Tensor<Dim>& H_a, const double* u, Window<Dim> H,
-                                       Index a) const {
+double DelaunayModel::contact_energies(const double* u, Window<Dim> H, Index a) const {
   constexpr std::size_t S = Lanes<Dim>::stride;
+  const Tensor<Dim> H_a = Tensor<Dim>::load(H.at(a));
   const Vec<Dim> u_a = load<Vec<Dim>>(u + a * S), X_a = load<Vec<Dim>>(&m_body.X[a * S]);
   double energy = 0;
   for (Index k = m_bonds.begin[a]; k < m_bonds.begin[a + 1]; ++k) {
     const std::size_t b = m_bonds.other[k];
     const Vec<Dim> u_ab = load<Vec<Dim>>(u + b * S) - u_a,
-                   X_ab = load<Vec<Dim>>(&m_body.X[b * S]) - X_a, x_ab = X_ab + u_ab;
+                   X_ab = load<Vec<Dim>>(&m_body.X[b * S]) - X_a;
     Tensor<Dim> sum = Tensor<Dim>::load(H.at(m_bonds.other[k]));
     for (int i = 0; i < Dim; ++i) sum.column[i] += H_a.column[i];
-    const Vec<Dim> local = u_ab - sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
-    const v2d products = lane_sums(local * x_ab, x_ab * x_ab);
-    const double normal2 = products[0] * products[0] / products[1];
-    const double K_t = m_factors.tangential * m_bonds.area_over_length[k],
-                 K_n = m_factors.normal * m_bonds.area_over_length[k];
-    energy += 0.5 * K_t * lane_sum(local * local) + 0.5 * (K_n - K_t) * normal2;
+    energy += contact_energy<Dim>(m_factors, m_bonds.area_over_length[k], X_ab, u_ab, sum);
   }
   return energy;
 }
 
 Energies DelaunayModel::energies(std::span<const double> u, const Executor& executor) {
-  std::vector<Energies> chunks((m_body.n + Reach::chunk - 1) / Reach::chunk);
+  ChunkedEnergies energies(m_body.n);
   const auto visit = [&]<int Dim>() {
     visit_gradients<Dim>(u.data(), executor, [&](Index first, Index last, Window<Dim> H) {
-      Energies& e = chunks[first / Reach::chunk];
       for (Index a = first; a < last; ++a) {
-        const Constitution::PointEnergy point =
-            m_constitution.energy(a, tensor_of<Dim>(H.at(a)));
-        e.internal += m_body.V[a] * point.stored;
-        e.plastic += m_body.V[a] * point.plastic;
-        if (m_contact)
-          e.stabilisation += contact_energies<Dim>(Tensor<Dim>::load(H.at(a)), u.data(), H, a);
+        energies.add(a, m_body.V[a], m_constitution.energy(a, tensor_of<Dim>(H.at(a))),
+                     m_contact ? contact_energies<Dim>(u.data(), H, a) : 0.0);
       }
     });
   };
   m_body.dim == 3 ? visit.template operator()<3>() : visit.template operator()<2>();
-  Energies total;
-  for (const Energies& e : chunks) {
-    total.internal += e.internal;
-    total.plastic += e.plastic;
-    total.stabilisation += e.stabilisation;
-  }
-  return total;
+  return energies.total();
 }
 
-/// Derivatives of (57), (58): with r = u_loc, c = K_n - K_t, s = r.x/|x|^2, w = r - s x,
-/// q = K_t r + c s x and p = q + c s w.
+/// Derivatives of (57), (58).
 PairTangent DelaunayModel::contact_tangent(Index a, Index k, std::span<const double> u,
                                            std::span<const Mat3> H) const {
   PairTangent t;
@@ -317,17 +268,9 @@ PairTangent DelaunayModel::contact_tangent(Index a, Index k, std::span<const dou
     u_ab[i] = u[static_cast<std::size_t>(t.b) * m_body.stride + i] -
               u[static_cast<std::size_t>(t.a) * m_body.stride + i];
   }
-  const Vec3 x = t.X_ab + u_ab, r = u_ab - 0.5 * (H[t.a] + H[t.b]) * t.X_ab;
-  const double K_t = m_factors.tangential * m_bonds.area_over_length[k],
-               c = m_factors.normal * m_bonds.area_over_length[k] - K_t;
-  const double x2 = x.squaredNorm(), s = r.dot(x) / x2;
-  const Vec3 w = r - s * x;
-  const Vec3 s_y = -x / x2, s_x = (x + r - 2 * s * x) / x2;
-  const Mat3 I = Mat3::Identity();
-  t.q_y = -K_t * I + c * x * s_y.transpose();
-  t.q_x = (K_t + c * s) * I + c * x * s_x.transpose();
-  t.p_y = t.q_y + c * (w * s_y.transpose() - s * I - s * x * s_y.transpose());
-  t.p_x = t.q_x + c * (w * s_x.transpose() + (s - s * s) * I - s * x * s_x.transpose());
+  const ContactLaw law = contact_law(m_factors, m_bonds.area_over_length[k], t.X_ab + u_ab,
+                                     u_ab - 0.5 * (H[t.a] + H[t.b]) * t.X_ab);
+  t.p_x = law.p_x, t.p_y = law.p_y, t.q_x = law.q_x, t.q_y = law.q_y;
   return t;
 }
 

@@ -4,11 +4,11 @@
 
 #include "particle/core/elastic.hpp"
 #include "particle/core/force_model.hpp"
-#include "particle/core/reach.hpp"
+#include "particle/core/sweeps.hpp"
 #include "particle/core/tangent.hpp"
+#include "particle/core/viscosity.hpp"
 #include "particle/delaunay/kernels.hpp"
 
-#include <memory>
 #include <optional>
 
 namespace concord::particle::delaunay {
@@ -19,12 +19,6 @@ struct Parameters {
   double xi_t = 1;  ///< K_t = xi_t G A_ab / L_ab
   double c1 = 0;    ///< linear artificial viscosity
   double c2 = 0;    ///< quadratic artificial viscosity
-};
-
-/// Coefficients of the viscous stress (62), times rho0.
-struct Viscosity {
-  double linear;     ///< rho0 c1 c_p h [Pa s]
-  double quadratic;  ///< rho0 c2 h^2 [Pa s^2]
 };
 
 /// Forces (46), (50) of the Delaunay method in the pair form of its README, on state u
@@ -58,23 +52,21 @@ class DelaunayModel final : public ForceModel {
   template <int Dim>
   void forces_in(std::span<const ParticleRange> parts, const double* u, const double* v,
                  double* f, const Executor& executor);
-  template <int Dim>
-  double contact_energies(const Tensor<Dim>& H_a, const double* u, Window<Dim> H,
-                          Index a) const;
+  template <int Dim> double contact_energies(const double* u, Window<Dim> H, Index a) const;
   template <int Dim, class Use>
   void visit_gradients(const double* u, const Executor& executor, const Use& use);
   PairTangent contact_tangent(Index a, Index k, std::span<const double> u,
                               std::span<const Mat3> H) const;
-  void make_spaces(int workers);
+  void provide_spaces(const Executor& executor);
 
   bool m_contact = false;
   ContactFactors m_factors{0, 0};
   Bonds m_bonds;
   Reach m_reach;
   std::vector<double> m_inverse_V;
-  std::optional<Viscosity> m_viscosity;
-  std::vector<std::unique_ptr<Space>> m_spaces;  ///< one a worker
-  std::optional<TangentAssembly> m_tangent;      ///< made when the first tangent is asked for
+  std::optional<Viscosity> m_viscosity;  ///< (61), (62)
+  Spaces<Space> m_spaces;
+  std::optional<TangentAssembly> m_tangent;  ///< made when the first tangent is asked for
 };
 
 }  // namespace concord::particle::delaunay

@@ -1,32 +1,24 @@
 #pragma once
 // The second half of the loops: stresses, and forces by the adjoints of both gradients.
 
+#include "particle/core/stress_rows.hpp"
 #include "particle/voronoi/kernels.hpp"
 #include "particle/voronoi/voronoi.hpp"
 
 namespace concord::particle::voronoi {
 
+/// Puts P_a into a window, whose vectors stay.
+template <int Dim> struct PutTensor {
+  Window<Dim> P;
+  CONCORD_INLINE void operator()(Index a, const Tensor<Dim>& P_a) const { P_a.store(P.at(a)); }
+};
+
 /// P_a of [first, last) in place of H_a. Returns the first particle with det F <= 0 or NaN, or
 /// -1.
 template <int Dim, StressLaw Law>
-CONCORD_CLONES Index stress_rows(const StressConstants& c, Index first, Index last,
-                                 Window<Dim> H) {
-  Index bad_particle = -1;
-  for (Index a = first; a < last; a += stress_width) {
-    const int count = std::min<Index>(stress_width, last - a);
-    double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width];
-    Tensor<Dim> tensor[stress_width];
-    for (int l = 0; l < stress_width; l += 4) {
-      const double* record[4];
-      for (int i = 0; i < 4; ++i) record[i] = H.at(a + std::min(l + i, count - 1));
-      tensors_to_lanes<Dim>(record, l, h);
-    }
-    const unsigned bad = stress_of_lanes<Dim, Law>(c, a, count, h, p);
-    for (int l = 0; l < stress_width; l += 4) lanes_to_tensors<Dim>(p, l, tensor + l);
-    for (int l = 0; l < count; ++l) tensor[l].store(H.at(a + l));
-    if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
-  }
-  return bad_particle;
+CONCORD_CLONES Index stresses(const StressConstants& c, Index first, Index last,
+                              Window<Dim> H) {
+  return stress_rows<Dim, Law>(c, first, last, H, PutTensor<Dim>{H});
 }
 
 /// Where forces on boundary points go; null in rows that belong to another part.

@@ -4,6 +4,7 @@
 // ends; what is added to one particle comes in ascending order of its neighbours, whoever works
 // on which rows. Ghosts of a particle are finished at the end of its row.
 
+#include "particle/core/contact.hpp"
 #include "particle/voronoi/stencil.hpp"
 
 namespace concord::particle::voronoi {
@@ -135,42 +136,20 @@ CONCORD_INLINE void face_ghosts(const Ghosts<Dim>& ghosts, Index a, const double
   }
 }
 
-/// Bonds of a group of rows between the two halves of the contact law.
-struct ContactBuffer {
-  Column local, x, X;  ///< u_loc, x_ab, X_ab: a vector a bond
-  Column products;     ///< u_loc.x_ab and |x_ab|^2
-  Column K, share, s;  ///< A/L, then K_t; (K_n - K_t) s; s = u_loc.x_ab / |x_ab|^2
-
-  ContactBuffer(const Bonds& bonds, int dim, bool contact) {
-    if (!contact) return;
-    Index most = 0;
-    const Index n = bonds.particles();
-    for (Index a = 0; a < n; ++a)
-      most = std::max(most, bonds.begin[std::min(n, a + stress_width)] - bonds.begin[a]);
-    const std::size_t size = static_cast<std::size_t>(most) + 8;
-    local.assign(size * stride_of(dim), 0.0);
-    x = X = local;
-    products.assign(2 * size, 1.0);
-    K.assign(size, 0.0);
-    share = s = K;
-  }
-};
-
 /// What one loop over rows of bonds makes of H^V: with Faces the gradients (VOR.9),
 ///   V_a H_a = sum_b [ u_ab/2 + (H^V_a + H^V_b)/2 t_ab ] (x) A_ab + walls,
-/// else a copy of H^V_a; with Contact the first half of the contact law, u_loc = u_ab - (H^V_a
-/// + H^V_b)/2 X_ab (29) and its products. H holds X in its vectors.
+/// else a copy of H^V_a; with Contact the first half of the contact law (29). H holds X in its
+/// vectors.
 template <int Dim, bool Contact, bool Faces>
 CONCORD_INLINE void local_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
                                Index last, const double* inverse_V, const double* u,
                                Window<Dim> mean, Window<Dim> H, GhostVectors<Dim> vectors,
                                ContactBuffer& buffer) {
-  constexpr std::size_t S = Lanes<Dim>::stride;
   const Index *begin = bonds.begin.data(), *other = bonds.other.data();
   const double* shapes = bonds.shape.data();
   const Vec<Dim> half = broadcast(0.5, Vec<Dim>{});
-  double *local_out = buffer.local.data(), *x_out = buffer.x.data(), *X_out = buffer.X.data(),
-         *products = buffer.products.data(), *ratio = buffer.K.data();
+  ContactInput<Dim> input(buffer);
+  double* ratio = buffer.K.data();
   for (Index a = first; a < last; ++a) {
     const double* mean_record = mean.at(a);
     double* record = H.at(a);
@@ -193,11 +172,8 @@ CONCORD_INLINE void local_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, In
         scatter_outer<Dim>(H_b, (u_ab - affine) * s, X_ab);
       }
       if constexpr (Contact) {
-        const Vec<Dim> local = u_ab - sum.times(X_ab) * half, x_ab = X_ab + u_ab;
-        store(local_out, local), store(x_out, x_ab), store(X_out, X_ab);
-        store(products, lane_sums(local * x_ab, x_ab * x_ab));
-        *ratio = 2 * shape[ratio_at];
-        local_out += S, x_out += S, X_out += S, products += 2, ++ratio;
+        input.add(X_ab, u_ab, sum);
+        *ratio++ = 2 * shape[ratio_at];
       }
     }
     if constexpr (Faces) {
@@ -208,58 +184,13 @@ CONCORD_INLINE void local_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, In
   }
 }
 
-/// K_n = normal A_ab / L_ab, K_t = tangential A_ab / L_ab (50): xi_n E and xi_t G [Pa].
-struct ContactFactors {
-  double normal, tangential;
-};
-
-/// Scalars of the law for `count` bonds, four at a time.
-CONCORD_INLINE void contact_scalars(Index count, const ContactFactors& factors,
-                                    ContactBuffer& buffer) {
-  typedef long long v4i __attribute__((vector_size(32)));
-  const v4d tangential = broadcast(factors.tangential, v4d{}),
-            difference = broadcast(factors.normal - factors.tangential, v4d{});
-  for (Index k = 0; k < count; k += 4) {
-    const v4d low = load<v4d>(&buffer.products[2 * k]),
-              high = load<v4d>(&buffer.products[2 * k + 4]);
-    const v4d s = __builtin_shuffle(low, high, v4i{0, 2, 4, 6}) /
-                  __builtin_shuffle(low, high, v4i{1, 3, 5, 7});
-    const v4d ratio = load<v4d>(&buffer.K[k]);
-    store(&buffer.K[k], tangential * ratio);
-    store(&buffer.share[k], difference * ratio * s);
-    store(&buffer.s[k], s);
-  }
-}
-
-/// Second half: with w = u_loc - s x_ab, q = K_t u_loc + (K_n - K_t) s x_ab and p = q + (K_n -
-/// K_t) s w, the derivatives of (49). Adds p to f_a and -p to f_b, and q (x) X_ab to the
-/// tensors of both: these sum up -2 Y_a, Y_a = dW/dH^V_a (VOR.14). Ghosts, whose law is linear:
-/// r_g = K (u_ag - H^V_a X_ag), and 2 r_g (x) X_ag.
-template <int Dim>
-CONCORD_INLINE void contact_forces(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
-                                   Index last, Window<Dim> mean, Window<Dim> Y,
-                                   GhostVectors<Dim> vectors, const ContactBuffer& buffer) {
-  constexpr std::size_t S = Lanes<Dim>::stride;
-  const Index *begin = bonds.begin.data(), *other = bonds.other.data();
-  const double *local_in = buffer.local.data(), *x_in = buffer.x.data(), *X = buffer.X.data();
-  const double *K = buffer.K.data(), *share = buffer.share.data(), *s = buffer.s.data();
-  for (Index a = first; a < last; ++a) {
-    double* record = Y.at(a);
-    Tensor<Dim> Y_a = Tensor<Dim>::load(record);
-    Vec<Dim> f_a = load<Vec<Dim>>(record + vector_place<Dim>);
-    for (Index k = begin[a], end = begin[a + 1]; k < end; ++k) {
-      double* Y_b = Y.at(other[k]);
-      const Vec<Dim> local = load<Vec<Dim>>(local_in), x_ab = load<Vec<Dim>>(x_in),
-                     X_ab = load<Vec<Dim>>(X);
-      const Vec<Dim> c = broadcast(*share, Vec<Dim>{});
-      const Vec<Dim> q = local * broadcast(*K, Vec<Dim>{}) + x_ab * c;
-      const Vec<Dim> p = q + (local - x_ab * broadcast(*s, Vec<Dim>{})) * c;
-      f_a += p;
-      store(Y_b + vector_place<Dim>, load<Vec<Dim>>(Y_b + vector_place<Dim>) - p);
-      Y_a.add_outer(q, X_ab);
-      scatter_outer<Dim>(Y_b, q, X_ab);
-      local_in += S, x_in += S, X += S, ++K, ++share, ++s;
-    }
+/// What ghosts add to the contact of row a (VOR.14), their law being linear: r_g = K (u_ag -
+/// H^V_a X_ag), and 2 r_g (x) X_ag beside the bonds' q (x) X_ab, which sum up -2 Y_a.
+template <int Dim> struct GhostContact {
+  const Ghosts<Dim>& ghosts;
+  Window<Dim> mean;
+  GhostVectors<Dim> vectors;
+  CONCORD_INLINE void operator()(Index a, Tensor<Dim>& Y_a) const {
     for (Index g = ghosts.begin[a]; g < ghosts.begin[a + 1]; ++g) {
       const GhostRecord<Dim>& ghost = ghosts.record[g];
       if (!ghost.prescribed()) continue;
@@ -268,13 +199,10 @@ CONCORD_INLINE void contact_forces(const Bonds& bonds, const Ghosts<Dim>& ghosts
       store(vectors.tau(g), r);
       Y_a.add_outer(r + r, ghost.X);
     }
-    Y_a.store(record);
-    store(record + vector_place<Dim>, f_a);
   }
-}
+};
 
-/// Gradients of faces and contact of rows [first, last), a group at a time: the division and
-/// the chains of either half overlap over its bonds.
+/// Gradients of faces and contact of rows [first, last), a group at a time.
 template <int Dim, bool Contact, bool Faces>
 CONCORD_CLONES void face_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Index first,
                               Index last, const double* inverse_V, const double* u,
@@ -285,8 +213,9 @@ CONCORD_CLONES void face_rows(const Bonds& bonds, const Ghosts<Dim>& ghosts, Ind
     local_rows<Dim, Contact, Faces>(bonds, ghosts, a, end, inverse_V, u, mean, H, vectors,
                                     buffer);
     if constexpr (Contact) {
-      contact_scalars(bonds.begin[end] - bonds.begin[a], factors, buffer);
-      contact_forces<Dim>(bonds, ghosts, a, end, mean, Y, vectors, buffer);
+      contact_scalars(bonds.begin[end] - bonds.begin[a], buffer.K.data(), factors, buffer);
+      contact_forces<Dim>(bonds.begin.data(), bonds.other.data(), a, end, Y, buffer,
+                          GhostContact<Dim>{ghosts, mean, vectors});
     }
   }
 }

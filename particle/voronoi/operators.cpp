@@ -56,10 +56,9 @@ Mat3 diagonal_product(const typename Rows<M>::Block& test,
 
 }  // namespace
 
-Operators::Operators(const Stars& stars, const GhostSystems& ghosts, Form form, double normal,
-                     double tangential)
-    : m_stars(stars), m_ghosts(ghosts), m_form(form), m_normal(normal),
-      m_tangential(tangential) {
+Operators::Operators(const Stars& stars, const GhostSystems& ghosts, Form form,
+                     const ContactFactors& factors)
+    : m_stars(stars), m_ghosts(ghosts), m_form(form), m_factors(factors) {
   for (Index a = 0; a < stars.particles(); ++a)
     m_mean.push_back(mean_gradient(stars(a), system(a)));
 }
@@ -148,29 +147,15 @@ Element<3> Operators::ghost(Index a, std::size_t g) const {
   return element;
 }
 
-Operators::BondLaw Operators::bond_law(const Neighbour& ab, const Vec3& u_ab,
-                                       const Vec3& h) const {
-  const double ratio = ab.A / ab.X.norm(), K_t = m_tangential * ratio,
-               c = m_normal * ratio - K_t;
-  const Vec3 x = ab.X + u_ab, r = u_ab - h;  // r: u_loc (29)
-  const double x2 = x.squaredNorm(), s = r.dot(x) / x2;
-  const Vec3 w = r - s * x, s_y = -x / x2, s_x = (x + r - 2 * s * x) / x2;
-  const Mat3 I = Mat3::Identity();
-  BondLaw law;
-  law.q = K_t * r + c * s * x;
-  law.p = law.q + c * s * w;
-  law.q_y = -K_t * I + c * x * s_y.transpose();
-  law.q_x = (K_t + c * s) * I + c * x * s_x.transpose();
-  law.p_y = law.q_y + c * (w * s_y.transpose() - s * I - s * x * s_y.transpose());
-  law.p_x = law.q_x + c * (w * s_x.transpose() + (s - s * s) * I - s * x * s_x.transpose());
-  law.energy = 0.5 * K_t * r.squaredNorm() + 0.5 * c * s * s * x2;
-  return law;
+ContactLaw Operators::bond_law(const Neighbour& ab, const Vec3& u_ab, const Vec3& h) const {
+  return contact_law(m_factors, ab.A / ab.X.norm(), ab.X + u_ab, u_ab - h);
 }
 
 Mat3 Operators::ghost_stiffness(const Ghost& ghost) const {
   const double ratio = ghost.A / ghost.length();
   const Mat3 normal = ghost.N * ghost.N.transpose();
-  const Mat3 K = ratio * (m_normal * normal + m_tangential * (Mat3::Identity() - normal));
+  const Mat3 K =
+      ratio * (m_factors.normal * normal + m_factors.tangential * (Mat3::Identity() - normal));
   return ghost.D * K * ghost.D;
 }
 
@@ -200,7 +185,7 @@ template <class Visit> void Operators::for_each_element(const Visit& visit) cons
       if (ab.b < a) continue;
       visit(bond(a, ab), [&](const Constitution&, const Eigen::Matrix<double, 6, 1>& s,
                              auto& dual, auto* derivative, Energies& energies) {
-        const BondLaw law = bond_law(ab, s.head<3>(), s.tail<3>());
+        const ContactLaw law = bond_law(ab, s.head<3>(), s.tail<3>());
         dual << law.p, -law.q;
         if (derivative) *derivative << law.p_x, law.p_y, -law.q_x, -law.q_y;
         energies.stabilisation += law.energy;

@@ -4,6 +4,7 @@
 // that tests compare the kernels with.
 
 #include "particle/core/constitution.hpp"
+#include "particle/core/contact.hpp"
 #include "particle/core/force_model.hpp"
 #include "particle/voronoi/rows.hpp"
 
@@ -17,9 +18,9 @@ template <int M> struct Element { Rows<M> trial, test; };
 /// Elements of the body in one form of the force.
 class Operators {
  public:
-  /// Keeps references; factors: xi_n E and xi_t G.
-  Operators(const Stars& stars, const GhostSystems& ghosts, Form form, double normal,
-            double tangential);
+  /// Keeps references.
+  Operators(const Stars& stars, const GhostSystems& ghosts, Form form,
+            const ContactFactors& factors);
 
   /// H_a = F_a - I and its test rows, entry 3 i + J (VOR.4, VOR.9). Dual: V_a P_a.
   Element<9> gradient(Index a) const;
@@ -29,15 +30,10 @@ class Operators {
   Element<3> ghost(Index a, std::size_t g) const;
 
   /// dU/dx_ab, -dU/dy_ab (49), and their derivatives, at u_ab and h = (H_a + H_b)/2 X_ab.
-  struct BondLaw {
-    Vec3 p, q;
-    Mat3 p_x, p_y, q_x, q_y;
-    double energy;
-  };
-  BondLaw bond_law(const Neighbour& ab, const Vec3& u_ab, const Vec3& h) const;
+  ContactLaw bond_law(const Neighbour& ab, const Vec3& u_ab, const Vec3& h) const;
   /// D (K_n N (x) N + K_t (I - N (x) N)) D of a ghost (50).
   Mat3 ghost_stiffness(const Ghost& ghost) const;
-  bool contact() const { return m_normal > 0 || m_tangential > 0; }
+  bool contact() const { return m_factors.any(); }
 
   std::vector<Mat3> gradients(std::span<const double> u) const;
   /// Forces on all points, dim doubles each.
@@ -61,7 +57,7 @@ class Operators {
   const Stars& m_stars;
   const GhostSystems& m_ghosts;
   Form m_form;
-  double m_normal, m_tangential;
+  ContactFactors m_factors;
   std::vector<Rows<9>> m_mean;  ///< H^V of each particle
 };
 

@@ -2,21 +2,13 @@
 // One pass over the particles: mean gradients run ahead of gradients of faces and contact,
 // these ahead of duals, and duals ahead of forces, each by what the rows of bonds reach.
 
-#include "particle/core/constitution.hpp"
-#include "particle/core/reach.hpp"
+#include "particle/core/sweeps.hpp"
+#include "particle/core/viscosity.hpp"
 #include "particle/voronoi/force_kernels.hpp"
-
-#include <Eigen/LU>
 
 #include <optional>
 
 namespace concord::particle::voronoi {
-
-/// Coefficients of the viscous stress (51), times rho0.
-struct Viscosity {
-  double linear;     ///< rho0 c1 c_p h [Pa s]
-  double quadratic;  ///< rho0 c2 h^2 [Pa s^2]
-};
 
 /// What every sweep over a body reads.
 template <int Dim> struct Setting {
@@ -27,15 +19,15 @@ template <int Dim> struct Setting {
   std::vector<double> inverse_V;
   ContactFactors factors{0, 0};
   Form form = Form::face_compatible;
-  std::optional<Viscosity> viscosity;
-  bool contact() const { return factors.normal > 0 || factors.tangential > 0; }
+  std::optional<Viscosity> viscosity;  ///< (51)
+  bool contact() const { return factors.any(); }
 };
 
 /// What one worker's sweep writes on the way: windows over particles, ghosts, buffers.
 template <int Dim> class Space {
  public:
   explicit Space(const Setting<Dim>& s)
-      : buffer(s.bonds, Dim, s.contact()), m_near(s.reach.window(2) - 1),
+      : buffer(s.bonds.begin, Dim, s.contact()), m_near(s.reach.window(2) - 1),
         m_far(s.reach.window(s.contact() ? 3 : 2) - 1) {
     m_mean.assign((m_near + 1) * record_size<Dim>, 0.0);
     m_H = m_mean;
@@ -79,7 +71,7 @@ template <int Dim> class Sweep {
     while (done < part.last) {
       const Index last = std::min(done + Reach::chunk, part.last);
       duals_to(m_s.reach.top(last));
-      by_ownership(done, last,
+      by_ownership(m_part, done, last,
                    [&](Index first, Index end, bool own) { force(first, end, own); });
       done = last;
     }
@@ -108,15 +100,6 @@ template <int Dim> class Sweep {
   void start_faces(Index first) {
     m_faces = m_opened = first;
     m_gradients = m_opened_mean = m_s.reach.bottom(first);
-  }
-
-  /// visit(first, last, whether they belong to the part) in ascending pieces.
-  template <class Visit> void by_ownership(Index first, Index last, const Visit& visit) const {
-    const Index own = std::clamp(m_part.first, first, last),
-                beyond = std::clamp(m_part.last, own, last);
-    if (first < own) visit(first, own, false);
-    if (own < beyond) visit(own, beyond, true);
-    if (beyond < last) visit(beyond, last, false);
   }
 
   template <class F> void with_map(const F& f) const {
@@ -189,7 +172,7 @@ template <int Dim> class Sweep {
     while (m_faces < last) {
       const Index first = m_faces;
       faces_to(first + 1);
-      by_ownership(first, m_faces,
+      by_ownership(m_part, first, m_faces,
                    [&](Index from, Index end, bool own) { stress(from, end, own); });
     }
   }
@@ -200,7 +183,7 @@ template <int Dim> class Sweep {
     c.keep_trial = keep;
     if (viscous()) viscous_stress(first, last);
     const Index bad = with_law(m_constitution.kernel().law, [&](auto law) {
-      return stress_rows<Dim, decltype(law)::value>(c, first, last, m_space.H());
+      return stresses<Dim, decltype(law)::value>(c, first, last, m_space.H());
     });
     if (m_bad < 0) m_bad = bad;
     if (!viscous()) return;
@@ -212,16 +195,12 @@ template <int Dim> class Sweep {
     }
   }
 
-  /// J sigma_visc F^-T (51) in place of the rate, with rho J = rho0: (linear + quadratic |tr
-  /// d|) d F^-T, d = sym(dF/dt F^-1).
+  /// J sigma_visc F^-T (51) in place of the rate.
   void viscous_stress(Index first, Index last) {
     const Viscosity& viscosity = *m_s.viscosity;
     for (Index a = first; a < last; ++a) {
-      const Mat3 inverse = (Mat3::Identity() + tensor_of<Dim>(m_space.H().at(a))).inverse();
-      const Mat3 l = tensor_of<Dim>(m_space.rate().at(a)) * inverse;
-      const Mat3 d = 0.5 * (l + l.transpose());
-      const Mat3 P = (viscosity.linear + viscosity.quadratic * std::abs(d.trace())) * d *
-                     inverse.transpose();
+      const Mat3 P = viscosity.stress(tensor_of<Dim>(m_space.H().at(a)),
+                                      tensor_of<Dim>(m_space.rate().at(a)));
       for (int j = 0; j < Dim; ++j) {
         for (int i = 0; i < Dim; ++i)
           m_space.rate().at(a)[j * Lanes<Dim>::stride + i] = P(i, j);
@@ -238,7 +217,7 @@ template <int Dim> class Sweep {
         open_records<Dim>(m_space.Y(), m_opened_Y, top);
         m_opened_Y = top;
       }
-      by_ownership(m_duals, end,
+      by_ownership(m_part, m_duals, end,
                    [&](Index first, Index to, bool own) { dual(first, to, own); });
       m_duals = end;
     }

@@ -3,19 +3,10 @@
 #include "particle/voronoi/operators.hpp"
 #include "particle/voronoi/sweep.hpp"
 
-#include <atomic>
 #include <variant>
 
 namespace concord::particle::voronoi {
 namespace {
-
-std::optional<Viscosity> viscosity_of(const Parameters& p, const scene::Material& material,
-                                      double h) {
-  if (!(p.c1 > 0 || p.c2 > 0)) return std::nullopt;
-  // (51): h is the shortest branch vector between particles.
-  return Viscosity{material.rho0 * p.c1 * material.longitudinal_wave_speed() * h,
-                   material.rho0 * p.c2 * h * h};
-}
 
 /// The kernels of one body in Dim dimensions.
 template <int Dim> class Evaluation {
@@ -38,13 +29,11 @@ template <int Dim> class Evaluation {
 
   void forces(const Constitution& constitution, const double* u, const double* v, double* f,
               const Executor& executor) {
-    std::atomic<Index> first_bad{particles()};
-    for_parts(executor, [&](Space<Dim>& space, ParticleRange part) {
-      const Index bad = Sweep<Dim>(m_setting, constitution, space, u, v).forces(part, f);
-      Index known = first_bad.load();
-      while (bad >= 0 && bad < known && !first_bad.compare_exchange_weak(known, bad)) continue;
+    FirstBad bad;
+    for_all(executor, [&](Space<Dim>& space, ParticleRange part) {
+      bad.tell(Sweep<Dim>(m_setting, constitution, space, u, v).forces(part, f));
     });
-    if (first_bad < particles()) throw BadState{"det F", first_bad};
+    bad.check();
   }
 
   void gradients(const Constitution& constitution, const double* u, std::span<Mat3> H) {
@@ -59,53 +48,40 @@ template <int Dim> class Evaluation {
 
   Energies energies(const Constitution& constitution, const double* u,
                     const Executor& executor) {
-    std::vector<Energies> chunks(particles() / Reach::chunk + 1);
+    ChunkedEnergies energies(particles());
     visit(constitution, u, executor,
           [&](Index first, Index last, Window<Dim> mean, Window<Dim> H,
               GhostVectors<Dim> vectors) {
             for (Index a = first; a < last; ++a) {
-              Energies& e = chunks[a / Reach::chunk];
-              const Constitution::PointEnergy point =
-                  constitution.energy(a, tensor_of<Dim>(H.at(a)));
-              e.internal += m_setting.body.V[a] * point.stored;
-              e.plastic += m_setting.body.V[a] * point.plastic;
-              if (m_setting.contact()) e.stabilisation += contact_energy(a, mean, vectors);
+              energies.add(a, m_setting.body.V[a],
+                           constitution.energy(a, tensor_of<Dim>(H.at(a))),
+                           m_setting.contact() ? contact_energies(a, mean, vectors) : 0.0);
             }
           });
-    Energies total;
-    for (const Energies& e : chunks) {
-      total.internal += e.internal;
-      total.plastic += e.plastic;
-      total.stabilisation += e.stabilisation;
-    }
-    return total;
+    return energies.total();
   }
 
  private:
   Index particles() const { return m_setting.bonds.particles(); }
 
-  /// work(space, part) for ranges that make up all particles, cut at whole chunks.
-  template <class Work> void for_parts(const Executor& executor, const Work& work) {
-    while (m_spaces.size() < static_cast<std::size_t>(executor.threads()))
-      m_spaces.push_back(std::make_unique<Space<Dim>>(m_setting));
+  /// work(space, part) for ranges that make up all particles.
+  template <class Work> void for_all(const Executor& executor, const Work& work) {
+    m_spaces.provide(executor.threads(),
+                     [&] { return std::make_unique<Space<Dim>>(m_setting); });
     const ParticleRange all{0, particles()};
-    if (executor.threads() == 1) return work(*m_spaces[0], all);
-    const auto dealt = deal({&all, 1}, executor.threads());
-    executor.for_each(dealt.size(), [&](std::size_t w) {
-      for (const ParticleRange& part : dealt[w]) work(*m_spaces[w], part);
-    });
+    m_spaces.for_parts({&all, 1}, executor, work);
   }
 
   template <class Use>
   void visit(const Constitution& constitution, const double* u, const Executor& executor,
              const Use& use) {
-    for_parts(executor, [&](Space<Dim>& space, ParticleRange part) {
+    for_all(executor, [&](Space<Dim>& space, ParticleRange part) {
       Sweep<Dim>(m_setting, constitution, space, u, u).gradients(part, use);
     });
   }
 
   /// Contact energies (49) of the bonds in row a and of its ghosts.
-  double contact_energy(Index a, Window<Dim> mean, GhostVectors<Dim> vectors) const {
+  double contact_energies(Index a, Window<Dim> mean, GhostVectors<Dim> vectors) const {
     const Bonds& bonds = m_setting.bonds;
     const double* X = m_setting.body.X.data();
     const Tensor<Dim> mean_a = Tensor<Dim>::load(mean.at(a));
@@ -115,16 +91,11 @@ template <int Dim> class Evaluation {
     for (Index k = bonds.begin[a]; k < bonds.begin[a + 1]; ++k) {
       const double* mean_b = mean.at(bonds.other[k]);
       const Vec<Dim> u_ab = load<Vec<Dim>>(mean_b + vector_place<Dim>) - u_a,
-                     X_ab = point_of<Dim>(X, bonds.other[k]) - X_a, x_ab = X_ab + u_ab;
+                     X_ab = point_of<Dim>(X, bonds.other[k]) - X_a;
       Tensor<Dim> sum = Tensor<Dim>::load(mean_b);
       for (int i = 0; i < Dim; ++i) sum.column[i] += mean_a.column[i];
-      const Vec<Dim> local = u_ab - sum.times(X_ab) * broadcast(0.5, Vec<Dim>{});
-      const v2d products = lane_sums(local * x_ab, x_ab * x_ab);
-      const double ratio = 2 * bonds.shape[k * shape_size + ratio_at],
-                   K_t = m_setting.factors.tangential * ratio,
-                   K_n = m_setting.factors.normal * ratio;
-      energy += 0.5 * K_t * lane_sum(local * local) +
-                0.5 * (K_n - K_t) * products[0] * products[0] / products[1];
+      energy += contact_energy<Dim>(
+          m_setting.factors, 2 * bonds.shape[k * shape_size + ratio_at], X_ab, u_ab, sum);
     }
     for (Index g = m_setting.ghosts.begin[a]; g < m_setting.ghosts.begin[a + 1]; ++g) {
       const GhostRecord<Dim>& ghost = m_setting.ghosts.record[g];
@@ -136,7 +107,7 @@ template <int Dim> class Evaluation {
   }
 
   Setting<Dim> m_setting;
-  std::vector<std::unique_ptr<Space<Dim>>> m_spaces;  ///< one a worker
+  Spaces<Space<Dim>> m_spaces;
 };
 
 }  // namespace
@@ -150,7 +121,8 @@ class VoronoiModel::Implementation {
         m_ghosts(solve_all_ghosts(m_stars, problem.geometry_where, executor)),
         m_factors{parameters.xi_n * problem.material.E, parameters.xi_t * problem.material.mu},
         m_form(parameters.form),
-        m_viscosity(viscosity_of(parameters, problem.material, body.h_min)) {
+        m_viscosity(
+            artificial_viscosity(parameters.c1, parameters.c2, problem.material, body.h_min)) {
     if (body.dim == 3)
       m_evaluation = std::make_unique<Evaluation<3>>(m_stars, m_ghosts, cells, m_factors,
                                                      m_form, m_viscosity);
@@ -171,7 +143,7 @@ class VoronoiModel::Implementation {
 
   const Stiffness& tangent(const Constitution& constitution, std::span<const double> u) {
     if (!m_operators) {
-      m_operators.emplace(m_stars, m_ghosts, m_form, m_factors.normal, m_factors.tangential);
+      m_operators.emplace(m_stars, m_ghosts, m_form, m_factors);
       m_tangent = m_operators->pattern();
     }
     m_operators->tangent(constitution, u, m_tangent);
@@ -233,11 +205,9 @@ bool VoronoiModel::has_potential() const {
 bool VoronoiModel::viscous() const { return m_implementation->viscosity().has_value(); }
 
 double VoronoiModel::viscous_damping_ratio(double omega_max) const {
-  // Damping c = (linear/rho0) k^2 against stiffness c_p^2 k^2 on the highest mode: ratio =
-  // linear w / (2 rho0 c_p^2).
   if (!viscous()) return 0;
   const LameConstants& lame = m_constitution.kernel().constants.lame;
-  return 0.5 * m_implementation->viscosity()->linear * omega_max / (lame.lambda + 2 * lame.mu);
+  return m_implementation->viscosity()->damping_ratio(lame, omega_max);
 }
 
 std::size_t VoronoiModel::interactions() const { return m_implementation->bonds(); }

@@ -131,7 +131,7 @@ void expect_same_forces(const Block& block, const Parameters& p) {
   const Stars stars(block.body, block.cells, block.boundary);
   const GhostSystems ghosts = solve_all_ghosts(stars, {}, Executor(1));
   const scene::Material& m = block.problem.material;
-  const Operators operators(stars, ghosts, p.form, p.xi_n * m.E, p.xi_t * m.mu);
+  const Operators operators(stars, ghosts, p.form, {p.xi_n * m.E, p.xi_t * m.mu});
   const Constitution constitution(block.problem, block.body.n);
   const Column u = block.random_displacement(), f = block.force(*model, u);
   const Eigen::VectorXd slow = operators.forces(constitution, u);
