@@ -44,7 +44,7 @@ void refuse_fracture(const Problem& problem, const std::string& method) {
   if (!problem.fracture) return;
   throw InputError(problem.fracture->where, "fracture",
                    "a scene with fracture for the method " + method,
-                   "a method that can break the material: cbm");
+                   "a method that can break the material: cbm, delaunay, tlsph");
 }
 
 }  // namespace concord::scene

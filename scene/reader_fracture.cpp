@@ -31,8 +31,6 @@ void check_scene(const Section& scene, const Section& fracture, const Problem& p
   };
   if (problem.is_static)
     refuse("fracture beside static = true", "a dynamic scene, with end_time");
-  if (problem.dim() != 2)
-    refuse("fracture in 3D", "dimension = \"plane stress\" or \"plane strain\"");
   if (problem.material.plastic())
     throw bad_value(Section(scene.require("material")).require("model"),
                     "an elastic model beside [fracture]");

@@ -67,7 +67,8 @@ const std::vector<KeyInfo>& scene_keys() {
       {"fracture.arrival", "text", "", "a physical group of the .geo",
        "Where the crack's arrival is timed"},
       {"fracture.crack[].from", "m", "", "an expression of the parameters a direction",
-       "Pre-crack: its mouth; bonds that cross it are removed"},
+       "Pre-crack: its mouth; bonds that cross it are removed, in 3D those that cross the plane "
+       "through it along Z"},
       {"fracture.crack[].to", "m", "", "an expression of the parameters a direction",
        "Pre-crack: its tip"},
 

@@ -1,8 +1,8 @@
 // Registration of the method `cbm`.
 
-#include "particle/cbm/fracture.hpp"
 #include "particle/core/particle_method.hpp"
 #include "particle/delaunay/delaunay.hpp"
+#include "particle/delaunay/fracture.hpp"
 
 #include <fmt/format.h>
 
@@ -41,20 +41,6 @@ scene::MethodInfo method_info() {
         "artificial damping control parameter beta (21), in scenes with [fracture] only", 0}}};
 }
 
-[[noreturn]] void refuse(const scene::Problem& problem, const std::string& key,
-                         const scene::Settings& settings, const std::string& allowed) {
-  throw InputError({problem.file.string(), 0, 0}, "cbm." + key, settings.word(key), allowed);
-}
-
-std::unique_ptr<ForceModel> make_fracture(const Body& body, const scene::Problem& problem,
-                                          const scene::Settings& settings) {
-  for (const char* key : {"xi_n", "xi_t"}) {
-    if (settings.number(key) != 0)
-      refuse(problem, key, settings, "0 in a scene with [fracture]: contact does not break");
-  }
-  return std::make_unique<FractureModel>(body, problem, settings.number("beta"));
-}
-
 /// Bond vectors zeta_ip (9) are the gradient vectors B_ip of the Delaunay method, Omega_i (1)
 /// its volumes, and -(18) its pair force: see README.md. What is left is the choice of cells,
 /// that contact is off, and fracture.
@@ -68,12 +54,18 @@ class CbmMethod final : public ParticleMethod {
   std::unique_ptr<ForceModel> make_model(const Body& body, const scene::Problem& problem,
                                          const scene::Settings& settings,
                                          const Executor& executor) const override {
-    if (problem.fracture) return make_fracture(body, problem, settings);
-    if (settings.number("beta") != default_beta)
-      refuse(problem, "beta", settings, "0.5, its default, in a scene without [fracture]");
+    const double xi_n = settings.number("xi_n"), xi_t = settings.number("xi_t"),
+                 beta = settings.number("beta");
+    if (problem.fracture) {
+      return std::make_unique<delaunay::FractureModel>(
+          body, problem, delaunay::FractureParameters{beta, xi_n, xi_t});
+    }
+    if (beta != default_beta) {
+      throw InputError({problem.file.string(), 0, 0}, "cbm.beta", settings.word("beta"),
+                       "0.5, its default, in a scene without [fracture]");
+    }
     delaunay::Parameters parameters;
-    parameters.xi_n = settings.number("xi_n");
-    parameters.xi_t = settings.number("xi_t");
+    parameters.xi_n = xi_n, parameters.xi_t = xi_t;
     return std::make_unique<delaunay::DelaunayModel>(body, problem, parameters, executor);
   }
 };

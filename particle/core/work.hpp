@@ -49,7 +49,8 @@ class ExternalWork {
 /// kick of duration dt by f_n changes the kinetic energy by dt f_n.w, w = (v_{n-1/2} +
 /// v_{n+1/2})/2, so D += dt (c m w - f_visc(u_n, v_{n-1/2})).w, without any error of its own.
 /// f_visc is what the forces change by when v is set to zero: a second evaluation a step, in
-/// viscous runs alone. Where there is neither, nothing is stored and a step costs nothing.
+/// viscous runs alone; models whose bonds can break keep it by itself. Where there is neither,
+/// nothing is stored and a step costs nothing.
 class Dissipation {
  public:
   Dissipation(ForceModel& model, const Constraints& constraints, const ExternalLoads& loads,
@@ -71,14 +72,18 @@ class Dissipation {
   void keep(scene::Checkpoint& state);
 
  private:
+  double kept_power(std::span<const double> v) const;
+
   ForceModel& m_model;
   const Constraints& m_constraints;
   const ExternalLoads& m_loads;
   const Executor& m_executor;
   bool m_viscous = false;
   double m_rate = 0, m_work = 0;
-  Column m_rest, m_force;  ///< no velocity, and f_visc: with viscosity
-  Column m_v;              ///< v_{n-1/2}
+  Column m_rest, m_force;          ///< no velocity, and f_visc: with viscosity
+  Column m_v;                      ///< v_{n-1/2}
+  std::span<const double> m_kept;  ///< f_visc of a model that keeps it by itself (Fracturing)
+  double m_kept_power = 0;         ///< m_kept.v_{n-1/2} [W]
 };
 
 }  // namespace concord::particle

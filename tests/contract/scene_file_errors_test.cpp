@@ -163,8 +163,6 @@ TEST(SceneFile, FractureBesideOtherStatements) {
   const std::string fracture = "[fracture]\nenergy_release_rate = \"100 J/m^2\"\n";
   expect_scene_error(with("end_time = \"1 ms\"", "static = true", fracture),
                      {"[fracture]", "fracture", "static = true", "end_time"});
-  expect_scene_error(with("\"plane strain\"", "\"3D\"", fracture),
-                     {"[fracture]", "fracture", "3D", "plane stress"});
   expect_scene_error(with("model = \"neo-hookean\"",
                           "model = \"j2-hencky\"\nyield_stress = \"1 kPa\"", fracture),
                      {"\"j2-hencky\"", "material.model", "j2-hencky", "an elastic model"});

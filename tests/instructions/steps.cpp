@@ -4,9 +4,9 @@
 #include "tests/instructions/bodies.hpp"
 #include "tests/instructions/counted.hpp"
 
-#include "particle/cbm/fracture.hpp"
 #include "particle/core/leapfrog.hpp"
 #include "particle/delaunay/delaunay.hpp"
+#include "particle/delaunay/fracture.hpp"
 #include "scene/reader.hpp"
 #include "sph_reference/total_lagrangian/model.hpp"
 
@@ -111,7 +111,7 @@ void breakable_steps(const std::string& name) {
   problem.initial_velocity.emplace();
   problem.initial_velocity->component[0] = scene::Expression("X", {});
   const Body body = unit_body(problem);
-  cbm::FractureModel model(body, problem, 0.5);
+  delaunay::FractureModel model(body, problem, {});
   count_steps(name, problem, body, model, Executor(1), {});
 }
 

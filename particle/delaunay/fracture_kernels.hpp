@@ -1,0 +1,316 @@
+#pragma once
+// The loops of one force evaluation on bonds that can break, over a few rows at a time, as in
+// kernels.hpp: each bond once, in the row of its lower-numbered particle, adding to both ends.
+// Elastic and viscous parts go side by side in one register. (CBM.n) are equations of the
+// Continuum Bond Method paper.
+
+#include "particle/core/stress_rows.hpp"
+#include "particle/delaunay/network.hpp"
+
+#include <cmath>
+
+namespace concord::particle::delaunay {
+
+typedef double v8d __attribute__((vector_size(64)));
+
+/// Two vectors side by side: elastic and viscous, or displacement and velocity.
+template <int Dim> struct TwinOf;
+template <> struct TwinOf<2> { using type = v4d; };
+template <> struct TwinOf<3> { using type = v8d; };
+template <int Dim> using Twin = typename TwinOf<Dim>::type;
+template <int Dim> inline constexpr std::size_t twin_size = 2 * Lanes<Dim>::stride;
+
+CONCORD_INLINE v4d twin(v2d a, v2d b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
+CONCORD_INLINE v8d twin(v4d a, v4d b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+CONCORD_INLINE v2d low(v4d t) { return __builtin_shufflevector(t, t, 0, 1); }
+CONCORD_INLINE v2d high(v4d t) { return __builtin_shufflevector(t, t, 2, 3); }
+CONCORD_INLINE v4d low(v8d t) { return __builtin_shufflevector(t, t, 0, 1, 2, 3); }
+CONCORD_INLINE v4d high(v8d t) { return __builtin_shufflevector(t, t, 4, 5, 6, 7); }
+CONCORD_INLINE v4d spread(const double* s, v4d) { return broadcast(*s, v4d{}); }
+CONCORD_INLINE v8d spread(const double* s, v8d) {
+  const v4d half = broadcast(*s, v4d{});
+  return twin(half, half);
+}
+
+/// Doubles in a record of stresses: {P, J F^-T} column by column, then {f, f_visc}; padded to
+/// whole cache lines.
+template <int Dim> inline constexpr std::size_t stress_record = Dim == 3 ? 32 : 16;
+template <int Dim> inline constexpr std::size_t force_place = Dim* twin_size<Dim>;
+
+/// Records of stresses in a ring, as Window.
+template <int Dim> struct StressWindow {
+  double* records;
+  std::size_t mask;
+  CONCORD_INLINE double* at(Index a) const {
+    return records + (static_cast<std::size_t>(a) & mask) * stress_record<Dim>;
+  }
+};
+
+/// What the loops read of some rows of a network.
+template <int Dim> struct SomeBonds {
+  const Ends* ends;
+  const double* z;  ///< dim doubles a bond
+  std::size_t count;
+  const SkewBond<Dim>*skew, *skew_end;  ///< those of them that are skew
+  Index first;                          ///< number of the first
+
+  SomeBonds(const Network& network, Index first_row, Index last_row) {
+    const std::vector<Index>& begin = network.rows().begin;
+    first = begin[first_row];
+    count = static_cast<std::size_t>(begin[last_row] - first);
+    ends = &network.ends(0) + first;
+    z = network.rows().B.data() + static_cast<std::size_t>(first) * Dim;
+    const auto& list = network.template skew<Dim>();
+    const auto before = [](const SkewBond<Dim>& one, Index k) { return one.bond < k; };
+    const auto low = std::lower_bound(list.begin(), list.end(), first, before),
+               high = std::lower_bound(low, list.end(), begin[last_row], before);
+    skew = list.data() + (low - list.begin());
+    skew_end = list.data() + (high - list.begin());
+  }
+};
+
+/// Records of [first, last) get a zero tensor, u and, in the plane, v behind it.
+template <int Dim>
+CONCORD_CLONES void open_motion(Window<Dim> window, Index first, Index last, const double* u,
+                                const double* v) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  for (Index a = first; a < last; ++a) {
+    const auto at = static_cast<std::size_t>(a) * S;
+    double* record = window.at(a);
+    for (int k = 0; k < Dim; ++k) store(record + k * S, Vec<Dim>{});
+    store(record + vector_place<Dim>, load<Vec<Dim>>(u + at));
+    if constexpr (Dim == 2) store(record + vector_place<Dim> + S, load<Vec<Dim>>(v + at));
+  }
+}
+
+/// Displacement and velocity of a particle whose record is open.
+template <int Dim>
+CONCORD_INLINE Twin<Dim> motion(const double* record, const double* v, std::size_t a) {
+  if constexpr (Dim == 2)
+    return load<v4d>(record + vector_place<2>);
+  else
+    return twin(load<v4d>(record + vector_place<3>), load<v4d>(v + a * 4));
+}
+
+/// u (x) z, in as few registers as it fits: one in the plane.
+template <int Dim> struct Outer;
+template <> struct Outer<2> {
+  v4d all;
+  CONCORD_INLINE Outer(v2d u, const double* z) {
+    const v2d vector = load<v2d>(z);
+    all = __builtin_shufflevector(u, u, 0, 1, 0, 1) *
+          __builtin_shufflevector(vector, vector, 0, 0, 1, 1);
+  }
+  CONCORD_INLINE void add_to(double* tensor) const { store(tensor, load<v4d>(tensor) + all); }
+  CONCORD_INLINE void take_from(double* tensor) const {
+    store(tensor, load<v4d>(tensor) - all);
+  }
+};
+template <> struct Outer<3> {
+  v4d column[3];
+  CONCORD_INLINE Outer(v4d u, const double* z) {
+    for (int k = 0; k < 3; ++k) column[k] = u * broadcast(z[k], v4d{});
+  }
+  CONCORD_INLINE void add_to(double* tensor) const {
+    for (int k = 0; k < 3; ++k) store(tensor + 4 * k, load<v4d>(tensor + 4 * k) + column[k]);
+  }
+  CONCORD_INLINE void take_from(double* tensor) const {
+    for (int k = 0; k < 3; ++k) store(tensor + 4 * k, load<v4d>(tensor + 4 * k) - column[k]);
+  }
+};
+
+/// Omega_a H_a = sum_b u_ab (x) zeta_ab, which is (CBM.8) less the identity, and v_ab.x_ab and
+/// |x_ab|^2 of every bond into `measures`. One loop over all bonds, with both ends in memory:
+/// rows are so short in the plane that their ends would be guessed wrong every other time.
+template <int Dim>
+CONCORD_CLONES void breakable_gradients(const SomeBonds<Dim>& bonds, const double* X,
+                                        const double* v, Window<Dim> H, double* measures) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  const Ends* ends = bonds.ends;
+  const double* z = bonds.z;
+  for (std::size_t k = 0; k < bonds.count; ++k, z += Dim) {
+    const auto a = static_cast<std::size_t>(ends[k].a), b = static_cast<std::size_t>(ends[k].b);
+    double *record_a = H.at(ends[k].a), *record_b = H.at(ends[k].b);
+    const Twin<Dim> motion_ab = motion<Dim>(record_b, v, b) - motion<Dim>(record_a, v, a);
+    const Vec<Dim> u_ab = low(motion_ab), v_ab = high(motion_ab);
+    const Outer<Dim> H_ab(u_ab, z);
+    H_ab.add_to(record_a);
+    H_ab.add_to(record_b);  // u_ba (x) zeta_ba
+    const Vec<Dim> x_ab = load<Vec<Dim>>(X + b * S) - load<Vec<Dim>>(X + a * S) + u_ab;
+    store(measures + 2 * k, lane_sums(v_ab * x_ab, x_ab * x_ab));
+  }
+  for (const SkewBond<Dim>* bond = bonds.skew; bond != bonds.skew_end; ++bond) {
+    double *record_a = H.at(bond->a), *record_b = H.at(bond->b);
+    const Outer<Dim> H_ab(load<Vec<Dim>>(record_b + vector_place<Dim>) -
+                              load<Vec<Dim>>(record_a + vector_place<Dim>),
+                          bond->s);
+    H_ab.add_to(record_a);
+    H_ab.take_from(record_b);
+  }
+}
+
+/// H_a of the particles [first, last), whose sums are complete.
+template <int Dim>
+CONCORD_CLONES void divide_by_omega(Index first, Index last, const double* inverse_omega,
+                                    Window<Dim> H) {
+  for (Index a = first; a < last; ++a) {
+    double* record = H.at(a);
+    const v4d w = broadcast(inverse_omega[a], v4d{});
+    for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k)
+      store(record + 4 * k, load<v4d>(record + 4 * k) * w);
+  }
+}
+
+/// -pi_ab = viscosity v_ab.x_ab / (|x_ab|^2 + softening) (CBM.21), with viscosity = beta l_c
+/// rho c_0 [Pa s] and softening = .01 l_c^2, of `count` bonds. Returns the largest |x_ab|^2 -
+/// limit; a bond whose difference is not below 0 fails.
+CONCORD_CLONES inline double bond_pressures(std::size_t count, double viscosity,
+                                            double softening, const double* __restrict limit,
+                                            const double* __restrict measures,
+                                            double* __restrict minus_pi) {
+  double excess = -1;
+#pragma omp simd reduction(max : excess)
+  for (std::size_t k = 0; k < count; ++k) {
+    const double x2 = measures[2 * k + 1];
+    minus_pi[k] = viscosity * measures[2 * k] / (x2 + softening);
+    excess = std::max(excess, x2 - limit[k]);
+  }
+  return excess;
+}
+
+/// cof F = J F^-T of F = I + H.
+template <int Dim> CONCORD_INLINE Tensor<Dim> cofactor_of(const Tensor<Dim>& H) {
+  Tensor<Dim> G;
+  if constexpr (Dim == 2) {
+    const v2d c0 = H.column[0], c1 = H.column[1];
+    G.column[0] = __builtin_shufflevector(c1, c1, 1, 0) * v2d{1, -1} + v2d{1, 0};
+    G.column[1] = __builtin_shufflevector(c0, c0, 1, 0) * v2d{-1, 1} + v2d{0, 1};
+  } else {
+    const v4d F[3] = {H.column[0] + v4d{1, 0, 0, 0}, H.column[1] + v4d{0, 1, 0, 0},
+                      H.column[2] + v4d{0, 0, 1, 0}};
+    for (int k = 0; k < 3; ++k) {  // G_k = F_(k+1) x F_(k+2)
+      const v4d p = F[(k + 1) % 3], q = F[(k + 2) % 3];
+      const v4d r = p * __builtin_shufflevector(q, q, 1, 2, 0, 3) -
+                    __builtin_shufflevector(p, p, 1, 2, 0, 3) * q;
+      G.column[k] = __builtin_shufflevector(r, r, 1, 2, 0, 3);
+    }
+  }
+  return G;
+}
+
+/// Puts P_a, with contact + Q_a/V_a from sum q (x) X in Q, and cof F_a = J_a F_a^-T into a
+/// window; the force begins with the sum of p, or zero.
+template <int Dim, bool Contact> struct PutTwins {
+  const double* inverse_omega;
+  Window<Dim> H, Q;
+  StressWindow<Dim> stresses;
+  CONCORD_INLINE void operator()(Index a, Tensor<Dim>& P_a) const {
+    const Tensor<Dim> cofactor = cofactor_of<Dim>(Tensor<Dim>::load(H.at(a)));
+    double* record = stresses.at(a);
+    Vec<Dim> f{};
+    if constexpr (Contact) {
+      const double* contact = Q.at(a);
+      const Tensor<Dim> twice = Tensor<Dim>::load(contact);
+      const Vec<Dim> w = broadcast(-0.5 * inverse_omega[a], Vec<Dim>{});
+      for (int k = 0; k < Dim; ++k) P_a.column[k] += twice.column[k] * w;
+      f = load<Vec<Dim>>(contact + vector_place<Dim>);
+    }
+    for (int k = 0; k < Dim; ++k)
+      store(record + k * twin_size<Dim>, twin(P_a.column[k], cofactor.column[k]));
+    store(record + force_place<Dim>, twin(f, Vec<Dim>{}));
+  }
+};
+
+/// P and cof F of [first, last). Returns the first particle with det F <= 0 or NaN, or -1.
+template <int Dim, StressLaw Law, bool Contact>
+CONCORD_CLONES Index breakable_stresses(const StressConstants& c, Index first, Index last,
+                                        const double* inverse_omega, Window<Dim> H,
+                                        Window<Dim> Q, StressWindow<Dim> stresses) {
+  return stress_rows<Dim, Law>(c, first, last, H,
+                               PutTwins<Dim, Contact>{inverse_omega, H, Q, stresses});
+}
+
+/// The works of the stress along bonds, n.P N eps_ab/2 [J/m^3], with the mean P of their ends,
+/// N and n the direction before and now, eps_ab the strain (CBM.20). Returns the largest work -
+/// limit of any bond.
+template <int Dim>
+CONCORD_CLONES double bond_works(const SomeBonds<Dim>& bonds, const double* X, const double* u,
+                                 StressWindow<Dim> stresses, const double* limit,
+                                 double* works) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  double excess = -1;
+  for (std::size_t k = 0; k < bonds.count; ++k) {
+    const Ends& ends = bonds.ends[k];
+    const auto a = static_cast<std::size_t>(ends.a), b = static_cast<std::size_t>(ends.b);
+    const double *P_a = stresses.at(ends.a), *P_b = stresses.at(ends.b);
+    const Vec<Dim> X_ab = load<Vec<Dim>>(X + b * S) - load<Vec<Dim>>(X + a * S),
+                   x_ab = X_ab + load<Vec<Dim>>(u + b * S) - load<Vec<Dim>>(u + a * S);
+    Tensor<Dim> P;
+    for (int i = 0; i < Dim; ++i) {
+      P.column[i] =
+          load<Vec<Dim>>(P_a + i * twin_size<Dim>) + load<Vec<Dim>>(P_b + i * twin_size<Dim>);
+    }
+    const v2d sums = lane_sums(x_ab * P.times(X_ab), x_ab * x_ab);
+    const double x2 = sums[1], L2 = lane_sum(X_ab * X_ab), L = std::sqrt(L2), l = std::sqrt(x2);
+    const double strain = (x2 - L2) / (L * (l + L));
+    works[k] = 0.25 * sums[0] / (l * L) * std::max(strain, 0.0);
+    excess = std::max(excess, works[k] - limit[k]);
+  }
+  return excess;
+}
+
+/// Adds t to the force on a and takes it from that on b; the viscous half times -pi.
+template <int Dim>
+CONCORD_INLINE void add_pair(double* record_a, double* record_b, Twin<Dim> t, double minus_pi) {
+  const Vec<Dim> one = broadcast(1.0, Vec<Dim>{});
+  t *= twin(one, broadcast(minus_pi, Vec<Dim>{}));
+  double *f_a = record_a + force_place<Dim>, *f_b = record_b + force_place<Dim>;
+  store(f_a, load<Twin<Dim>>(f_a) + t);
+  store(f_b, load<Twin<Dim>>(f_b) - t);
+}
+
+/// Force on a by b, -(CBM.18) - (CBM.23): P~_a zeta_ab - P~_b zeta_ba = (P~_a + P~_b) z + (P~_a
+/// - P~_b) s with P~ = P - pi_ab J F^-T. The sign of pi is the one that takes energy; (23) with
+/// (19) as printed feeds it.
+template <int Dim>
+CONCORD_CLONES void breakable_forces(const SomeBonds<Dim>& bonds, const double* minus_pi,
+                                     StressWindow<Dim> stresses) {
+  constexpr std::size_t T = twin_size<Dim>;
+  const Ends* ends = bonds.ends;
+  const double* z = bonds.z;
+  for (std::size_t k = 0; k < bonds.count; ++k, z += Dim) {
+    double *record_a = stresses.at(ends[k].a), *record_b = stresses.at(ends[k].b);
+    Twin<Dim> t =
+        (load<Twin<Dim>>(record_a) + load<Twin<Dim>>(record_b)) * spread(z, Twin<Dim>{});
+    for (int i = 1; i < Dim; ++i) {
+      t += (load<Twin<Dim>>(record_a + i * T) + load<Twin<Dim>>(record_b + i * T)) *
+           spread(z + i, Twin<Dim>{});
+    }
+    add_pair<Dim>(record_a, record_b, t, minus_pi[k]);
+  }
+  for (const SkewBond<Dim>* bond = bonds.skew; bond != bonds.skew_end; ++bond) {
+    double *record_a = stresses.at(bond->a), *record_b = stresses.at(bond->b);
+    Twin<Dim> t{};
+    for (int i = 0; i < Dim; ++i) {
+      t += (load<Twin<Dim>>(record_a + i * T) - load<Twin<Dim>>(record_b + i * T)) *
+           spread(bond->s + i, Twin<Dim>{});
+    }
+    add_pair<Dim>(record_a, record_b, t, minus_pi[bond->bond - bonds.first]);
+  }
+}
+
+/// Forces of [first, last): elastic + viscous part, and the viscous part by itself.
+template <int Dim>
+CONCORD_CLONES void copy_forces(StressWindow<Dim> stresses, Index first, Index last, double* f,
+                                double* viscous) {
+  constexpr std::size_t S = Lanes<Dim>::stride;
+  for (Index a = first; a < last; ++a) {
+    const Twin<Dim> parts = load<Twin<Dim>>(stresses.at(a) + force_place<Dim>);
+    store(f + static_cast<std::size_t>(a) * S, low(parts) + high(parts));
+    store(viscous + static_cast<std::size_t>(a) * S, high(parts));
+  }
+}
+
+}  // namespace concord::particle::delaunay
