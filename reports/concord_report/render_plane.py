@@ -82,7 +82,7 @@ def _particles(axes, reference, positions, data, h, per_metre, look, torn):
     reference, positions = reference[good], positions[good]
     data = np.ma.masked_invalid(data[good])
     quads, owner, alone, edge = plane_cells.shares(reference, positions, h, torn)
-    filled = PolyCollection(quads, array=data[owner], edgecolors="face", linewidths=0.5, **look)
+    filled = PolyCollection(quads, array=data[owner], edgecolors="face", linewidths=0.5, antialiaseds=False, **look)  # no seams
     axes.add_collection(filled, autolim=False)
     _rim(axes, edge)
     if len(alone):
