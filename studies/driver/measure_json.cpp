@@ -147,11 +147,11 @@ json run_table_json(const StudyResult& result, const RunTable& entry) {
                                  {"unit", column.unit},
                                  {"digits", column.digits},
                                  {"difference", column.difference}});
-  for (const TableLine& line : entry.lines) {
-    json row{{"label", line.label}, {"cells", json::array()}};
-    put_text(row, "source_value", line.source_value);
+  for (const TableLine* line : lines_of(result.rows, *result.study, entry)) {
+    json row{{"label", line->label}, {"cells", json::array()}};
+    put_text(row, "source_value", line->source_value);
     for (const TableColumn& column : entry.columns) {
-      const TableCell cell = table_cell(*result.study, result.rows, line, column);
+      const TableCell cell = table_cell(*result.study, result.rows, *line, column);
       json one{{"value", cell.value ? json(*cell.value) : json(nullptr)}, {"runs", cell.runs}};
       put_text(one, "reason", cell.reason);
       put_balance(one, cell.closes);

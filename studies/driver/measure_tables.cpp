@@ -92,11 +92,11 @@ Table run_table(const StudyResult& result, const RunTable& entry, std::size_t n)
   for (const TableColumn& column : entry.columns)
     table.columns.push_back(
         column.unit == "1" ? column.label : fmt::format("{} [{}]", column.label, column.unit));
-  for (const TableLine& line : entry.lines) {
-    Cells cells{line.label, line.source_value};
+  for (const TableLine* line : lines_of(result.rows, *result.study, entry)) {
+    Cells cells{line->label, line->source_value};
     for (const TableColumn& column : entry.columns)
       cells.push_back(
-          number(table_cell(*result.study, result.rows, line, column).value, column.digits));
+          number(table_cell(*result.study, result.rows, *line, column).value, column.digits));
     table.cells.push_back(std::move(cells));
   }
   return table;

@@ -23,7 +23,23 @@ std::optional<double> number_of(const Row& run, const TableColumn& column, Table
   return value;
 }
 
+bool selects(const TableLine& line, const Study& study, const Row& run) {
+  return study.cases[run.case_index].matches(line.selector) &&
+         (!line.resolution || run.resolution == *line.resolution);
+}
+
 }  // namespace
+
+std::vector<const TableLine*> lines_of(const std::vector<Row>& rows, const Study& study,
+                                       const RunTable& table) {
+  std::vector<const TableLine*> lines;
+  for (const TableLine& line : table.lines) {
+    if (std::any_of(rows.begin(), rows.end(),
+                    [&](const Row& run) { return selects(line, study, run); }))
+      lines.push_back(&line);
+  }
+  return lines;
+}
 
 TableCell table_cell(const Study& study, const std::vector<Row>& rows, const TableLine& line,
                      const TableColumn& column) {
@@ -31,8 +47,7 @@ TableCell table_cell(const Study& study, const std::vector<Row>& rows, const Tab
   std::vector<double> values;
   if (column.difference && !line.against) return cell;
   for (const Row& run : rows) {
-    if (!study.cases[run.case_index].matches(line.selector)) continue;
-    if (line.resolution && run.resolution != *line.resolution) continue;
+    if (!selects(line, study, run)) continue;
     const Row* partner =
         column.difference ? partner_of(study, rows, run, *line.against) : nullptr;
     if (column.difference && partner == nullptr) continue;

@@ -14,6 +14,10 @@ struct TableCell {
   bool closes = true;           ///< no run used whose energy balance does not close
 };
 
+/// The lines of a table whose cases run in this mode.
+std::vector<const TableLine*> lines_of(const std::vector<Row>& rows, const Study& study,
+                                       const RunTable& table);
+
 /// Pools the column's quantity over all runs that the line selects. Of a difference: the pool
 /// of value - value of the line's `against`, run by run of equal resolution and seed; runs
 /// without such a partner do not enter, and a line without `against` has no value.

@@ -3,6 +3,7 @@
 #include "scene/output.hpp"
 #include "studies/driver/drawing_json.hpp"
 #include "studies/driver/measure_json.hpp"
+#include "studies/driver/run_table.hpp"
 #include "studies/driver/tables.hpp"
 
 #include <algorithm>
@@ -176,7 +177,8 @@ json study_json(const StudyResult& result) {
   for (const Heatmap& map : study.heatmaps)
     object["heatmap"].push_back(heatmap_json(result, map));
   for (const RunTable& table : study.tables)
-    object["tables"].push_back(run_table_json(result, table));
+    if (!lines_of(result.rows, study, table).empty())
+      object["tables"].push_back(run_table_json(result, table));
   for (const Plot& plot : study.plots) {
     object["plots"].push_back(plot_json(study, plot));
     if (plot.kind == "work_precision") put_work_precision(object["plots"].back(), result, plot);

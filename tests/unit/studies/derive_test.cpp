@@ -92,9 +92,16 @@ TEST_F(Derived, SignalsOfTheLastPartOfARecord) {
   const double amplitude = 1 + 1. / 16;
   EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.initial"), -amplitude, 1e-4);
   EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.largest_change"), 2 * amplitude, 1e-4);
+  m_study.signals[0].from.reset();
+  m_study.signals[0].features = {"final", "maximum"};
+  m_study.signals[0].to = 0.75;
+  derive();
+  EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.final"), -amplitude, 1e-4);
+  EXPECT_NEAR(*value_of(m_rows[0], "signals.tip.maximum"), amplitude, 1e-4);
+  m_study.signals[0].to.reset();
   m_study.signals[0].from = 2;  // after the end
   derive();
-  EXPECT_NE(why_absent(m_rows[0], "signals.tip.initial").find("fewer than two"),
+  EXPECT_NE(why_absent(m_rows[0], "signals.tip.final").find("fewer than two"),
             std::string::npos);
 }
 

@@ -74,11 +74,16 @@ TEST_F(ChosenCases, WhatIsAbsentSaysWhy) {
 
 TEST_F(ChosenCases, StandInTheFiles) {
   study.tables.push_back({"T", "a note", {column}, {line}, {}});
+  study.tables.push_back(study.tables[0]);
+  study.tables[1].lines[0].resolution = 32;
+  study.tables[0].lines.push_back(study.tables[1].lines[0]);
   study.tables[0].lines[0].source_value = "12 %";
   StudyResult result;
   result.study = &study;
   result.rows = rows;
   const auto json = study_json(result);
+  ASSERT_EQ(json["tables"].size(), 1u) << "the other one has no line that runs";
+  EXPECT_EQ(json["tables"][0]["rows"].size(), 1u);
   EXPECT_EQ(json["tables"][0]["title"], "T");
   EXPECT_EQ(json["tables"][0]["columns"][0]["unit"], "%");
   const auto& row = json["tables"][0]["rows"][0];
