@@ -55,4 +55,13 @@ Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous, Is
   return baseline::choose(dim, law, penalty, viscous);
 }
 
+ForceLoop choose_damping(int dim, Isa isa) {
+#ifdef SPH_WIDE
+  if (isa == Isa::avx512) return avx512::choose_damping(dim);
+  if (isa == Isa::avx2) return avx2::choose_damping(dim);
+#endif
+  static_cast<void>(isa);
+  return baseline::choose_damping(dim);
+}
+
 }  // namespace concord::sph

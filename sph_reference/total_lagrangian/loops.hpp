@@ -39,6 +39,10 @@ enum class Isa { baseline, avx2, avx512 };
 /// The widest one that this machine runs.
 Isa best_isa();
 
+/// Forces on one block of particles [first, last), from H and T of all particles.
+using ForceLoop = void (*)(const Neighbours& rows, std::size_t first, std::size_t last,
+                           const Viscosity& eta, const State& s);
+
 /// Each function works on one block of particles [first, last) and writes to these alone.
 struct Loops {
   /// H_a (TLS.5).
@@ -50,12 +54,15 @@ struct Loops {
   /// or -1.
   Index (*stresses)(const Neighbours& rows, std::size_t first, std::size_t last,
                     const StressConstants& c, const State& s);
-  /// f_a (TLS.7) from H and T of all particles.
-  void (*forces)(const Neighbours& rows, std::size_t first, std::size_t last,
-                 const Viscosity& eta, const State& s);
+  /// f_a (TLS.7).
+  ForceLoop forces;
 };
 
 Loops choose_loops(int dim, StressLaw law, PenaltyForm penalty, bool viscous,
                    Isa isa = best_isa());
+
+/// The damping of pairs that can break, (TLS.21), by itself: `eta` has its linear coefficient,
+/// 2 beta l_c rho0 c_0, and .01 l_c^2. Reads neither H nor T.
+ForceLoop choose_damping(int dim, Isa isa = best_isa());
 
 }  // namespace concord::sph

@@ -15,6 +15,11 @@ Viscosity viscosity(const TlsphOptions& options, const scene::Material& material
           options.beta * material.rho0 * h * h, 0.01 * h * h};
 }
 
+/// 1 for no sizes.
+double largest(const std::vector<double>& sizes) {
+  return sizes.empty() ? 1 : *std::max_element(sizes.begin(), sizes.end());
+}
+
 }  // namespace
 
 TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& problem,
@@ -22,10 +27,11 @@ TotalLagrangianSph::TotalLagrangianSph(const Body& body, const scene::Problem& p
     : ForceModel(body, problem), m_options(options),
       m_kernel(options.kernel, body.dim, options.support * body.h),
       m_rho0(problem.material.rho0),
+      m_sizes(options.local ? local_sizes(body) : std::vector<double>()),
       m_viscosity(viscosity(options, problem.material, m_kernel.smoothing_length())),
-      m_points(body, options.planes, m_kernel.radius()),
+      m_points(body, options.planes, m_kernel.radius() * largest(m_sizes)),
       m_rows(find_neighbours(m_points, body.V, m_kernel, options.psi * problem.material.E,
-                             executor)),
+                             executor, m_sizes)),
       m_loops(choose_loops(body.dim, m_constitution.kernel().law, penalty(), viscous())),
       m_state(m_points.make_points()), m_H(make_tensors()), m_T(make_tensors()),
       m_v(viscous() ? m_points.make_column() : Column()), m_bad(m_rows.blocks.size() - 1, -1) {
@@ -197,7 +203,10 @@ double TotalLagrangianSph::penalty_energy(const Executor& executor) const {
 }
 
 double TotalLagrangianSph::viscous_damping_ratio(double omega_max) const {
-  if (!viscous()) return 0;
+  return viscous() ? damping_ratio(m_viscosity.linear, omega_max) : 0;
+}
+
+double TotalLagrangianSph::damping_ratio(double linear, double omega_max) const {
   std::vector<double> sums(m_body.n, 0.0);  // sum_b c_ab
   for (Index a = 0; a < m_body.n; ++a) {
     for (std::size_t k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
@@ -207,7 +216,20 @@ double TotalLagrangianSph::viscous_damping_ratio(double omega_max) const {
   }
   double largest = 0;
   for (Index a = 0; a < m_body.n; ++a) largest = std::max(largest, sums[a] / m_body.V[a]);
-  return m_viscosity.linear / m_rho0 * largest / omega_max;  // (TLS.13)
+  return linear / m_rho0 * largest / omega_max;  // (TLS.13)
+}
+
+Neighbours& TotalLagrangianSph::change_neighbours() {
+  m_tangent.reset();
+  return m_rows;
+}
+
+void TotalLagrangianSph::add_up(ForceLoop loop, const Viscosity& eta, std::span<const double> v,
+                                std::span<double> f, const Executor& executor) {
+  const State s{m_state.data(), v.data(), m_body.V.data(), m_H.data(), m_T.data(), f.data()};
+  for_blocks(all_blocks(), executor, [&](std::size_t, std::size_t first, std::size_t last) {
+    loop(m_rows, first, last, eta, s);
+  });
 }
 
 }  // namespace concord::sph

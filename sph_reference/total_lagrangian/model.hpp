@@ -21,6 +21,7 @@ struct TlsphOptions {
   double alpha = 0;             ///< linear viscosity; 0: none
   double beta = 0;              ///< quadratic viscosity
   std::vector<Plane> planes{};  ///< with mirror particles behind them
+  bool local = false;           ///< R_a follows the local spacing: local_sizes()
 };
 
 class TotalLagrangianSph final : public particle::ForceModel {
@@ -47,14 +48,23 @@ class TotalLagrangianSph final : public particle::ForceModel {
   double viscous_damping_ratio(double omega_max) const override;
   std::size_t interactions() const override { return m_rows.directed; }
 
+  /// Bound on the damping ratio at omega_max by dashpots c_ab `linear` [Pa s] (TLS.13).
+  double damping_ratio(double linear, double omega_max) const;
+
   const Neighbours& neighbours() const { return m_rows; }
+  /// For models whose pairs break: weights, stiffnesses and inverse moments may be changed.
+  Neighbours& change_neighbours();
+  /// Sets f to the forces of `loop` at the displacements of the last evaluation and at v.
+  /// Without images.
+  void add_up(ForceLoop loop, const Viscosity& eta, std::span<const double> v,
+              std::span<double> f, const Executor& executor);
+  PenaltyForm penalty() const {
+    return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none;
+  }
   const Kernel& kernel() const { return m_kernel; }
   const Points& points() const { return m_points; }
 
  private:
-  PenaltyForm penalty() const {
-    return m_options.psi > 0 ? m_options.penalty : PenaltyForm::none;
-  }
   Mat3 plane_gradient(Index a) const;
   /// Blocks of the neighbour lists, a bit each.
   using BlockSet = std::bitset<max_blocks>;
@@ -83,6 +93,7 @@ class TotalLagrangianSph final : public particle::ForceModel {
   TlsphOptions m_options;
   Kernel m_kernel;
   double m_rho0;
+  std::vector<double> m_sizes;  ///< with options.local
   Viscosity m_viscosity;
   Points m_points;
   Neighbours m_rows;

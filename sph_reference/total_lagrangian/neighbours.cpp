@@ -1,5 +1,6 @@
 #include "sph_reference/total_lagrangian/neighbours.hpp"
 
+#include "particle/core/edges.hpp"
 #include "scene/errors.hpp"
 #include "sph_reference/total_lagrangian/grid.hpp"
 
@@ -30,29 +31,17 @@ struct Piece {
   std::size_t found = 0;  ///< and their number
 };
 
-/// Inverts V_a K_a into its padded columns; false if the neighbours do not span the space.
-/// 1e-8: half of the digits are lost.
-bool invert_moment(const Body& body, Mat3 K, double* p) {
-  if (body.dim == 2)
-    K(2, 2) =
-        0.5 * K.trace();  // any value between the eigenvalues: leaves the plane's inverse alone
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(K);
-  const Vec3& lambda = eigen.eigenvalues();
-  if (!(lambda[0] > 1e-8 * lambda[2])) return false;
-  const Mat3 inverse = eigen.eigenvectors() * lambda.cwiseInverse().asDiagonal() *
-                       eigen.eigenvectors().transpose();
-  for (int j = 0; j < body.dim; ++j) {
-    for (int i = 0; i < body.dim; ++i)
-      p[j * body.stride + i] = 0.5 * (inverse(i, j) + inverse(j, i));
-  }
-  return true;
-}
+/// Ratio of V_a K_a's eigenvalues below which the neighbours count as not spanning the space:
+/// half of the digits are lost.
+constexpr double least_ratio = 1e-8;
 
 class Search {
  public:
-  Search(const Points& points, std::span<const double> V, const Kernel& kernel, double penalty)
-      : m_points(points), m_V(V), m_kernel(kernel), m_penalty(penalty),
-        m_grid(points, kernel.radius()) {}
+  Search(const Points& points, std::span<const double> V, const Kernel& kernel, double penalty,
+         std::span<const double> sizes)
+      : m_points(points), m_V(V), m_kernel(kernel), m_penalty(penalty), m_sizes(sizes),
+        m_largest(sizes.empty() ? 1 : *std::max_element(sizes.begin(), sizes.end())),
+        m_grid(points, kernel.radius() * m_largest) {}
 
   /// Lengths of the piece's rows.
   void count(const Piece& piece, Neighbours& rows) const {
@@ -96,13 +85,30 @@ class Search {
   /// vanish: round-off shall not decide whether they count. Nor does a particle count its image
   /// at its own place, to which X_ab = 0.
   std::size_t neighbours(Index a, std::vector<Grid::Found>& found) const {
-    const double R2 = m_kernel.radius() * m_kernel.radius();
-    const std::size_t near = m_grid.within(m_points.position(a), R2 * (1 - 1e-10), found);
+    const double R2 = m_kernel.radius() * m_kernel.radius(), inside = R2 * (1 - 1e-10);
+    const double reach = m_sizes.empty() ? 1 : 0.5 * (m_sizes[a] + m_largest);
+    const std::size_t near = m_grid.within(m_points.position(a), inside * reach * reach, found);
     const auto end = found.begin() + static_cast<std::ptrdiff_t>(near);
-    const auto itself = [&](const Grid::Found& p) {
-      return p.b == a || (p.r2 <= 1e-20 * R2 && m_points.source(p.b) == a);
+    const auto none = [&](const Grid::Found& p) {
+      if (p.b == a || (p.r2 <= 1e-20 * R2 && m_points.source(p.b) == a)) return true;
+      const double s = size(a, m_points.source(p.b));
+      return !m_sizes.empty() && p.r2 >= inside * s * s;
     };
-    return static_cast<std::size_t>(std::remove_if(found.begin(), end, itself) - found.begin());
+    return static_cast<std::size_t>(std::remove_if(found.begin(), end, none) - found.begin());
+  }
+
+  /// R_ab over the kernel's radius.
+  double size(Index a, Index b) const {
+    return m_sizes.empty() ? 1 : 0.5 * (m_sizes[a] + m_sizes[b]);
+  }
+  /// W and -W'/r of the kernel stretched to `size` times its radius.
+  double value(double r, double size) const {
+    if (size == 1) return m_kernel.value(r);
+    return m_kernel.value(r / size) / std::pow(size, m_points.body().dim);
+  }
+  double slope(double r, double size) const {
+    if (size == 1) return m_kernel.slope(r);
+    return m_kernel.slope(r / size) / std::pow(size, m_points.body().dim + 2);
   }
 
   /// Sums V_a K_a (TLS.4) over all neighbours of a, and weighs those that belong to its row.
@@ -116,19 +122,18 @@ class Search {
       const auto& [b, r2, X_ab] = found[i];
       const Index source = m_points.source(b);
       const double areas = m_V[a] * m_V[source] / body.thickness;
-      const double c = areas * m_kernel.slope(std::sqrt(r2));
+      const double s = size(a, source), c = areas * slope(std::sqrt(r2), s);
       K.noalias() += (c * X_ab) * X_ab.transpose();
       if (!in_row(a, b, piece.block, rows)) continue;
-      row.push_back(
-          {within(b, piece.block, rows) ? b : b + elsewhere, c,
-           m_penalty > 0 ? m_penalty * areas * m_kernel.value(std::sqrt(r2)) / r2 : 0});
+      row.push_back({within(b, piece.block, rows) ? b : b + elsewhere, c,
+                     m_penalty > 0 ? m_penalty * areas * value(std::sqrt(r2), s) / r2 : 0});
       piece.lowest = std::min(piece.lowest, source);
       piece.highest = std::max(piece.highest, source);
     }
     piece.directed += near;
     double* inverse =
         &rows.inverse_moment[static_cast<std::size_t>(a) * body.dim * body.stride];
-    if (!invert_moment(body, K, inverse) && piece.singular < 0)
+    if (!invert_moment(body, K, least_ratio, inverse) && piece.singular < 0)
       piece.singular = a, piece.found = near;
   }
 
@@ -136,6 +141,8 @@ class Search {
   std::span<const double> m_V;
   const Kernel& m_kernel;
   double m_penalty;
+  std::span<const double> m_sizes;
+  double m_largest;  ///< of them
   Grid m_grid;
 };
 
@@ -149,7 +156,8 @@ class Search {
                                kernel.radius() / body.h, X[0], X[1], X[2], count, body.dim),
                    "a larger support radius, or a finer resolution, so that every particle's "
                    "neighbours span the space "
-                   "(2 spacings serve on most arrangements)");
+                   "(2 spacings serve on most arrangements); smoothing = local where "
+                   "the spacing varies");
 }
 
 std::vector<Piece> pieces_of(const std::vector<Index>& blocks) {
@@ -181,14 +189,15 @@ std::vector<Index> blocks_of(const Body& body, double R) {
 }
 
 Neighbours find_neighbours(const Points& points, std::span<const double> V,
-                           const Kernel& kernel, double penalty, const Executor& executor) {
+                           const Kernel& kernel, double penalty, const Executor& executor,
+                           std::span<const double> sizes) {
   const Body& body = points.body();
   Neighbours rows;
   rows.blocks = blocks_of(body, kernel.radius());
   rows.begin.assign(body.n + 1, 0);
   rows.cut.assign(body.n, 0);
   rows.inverse_moment.assign(static_cast<std::size_t>(body.n) * body.dim * body.stride, 0.0);
-  const Search search(points, V, kernel, penalty);
+  const Search search(points, V, kernel, penalty, sizes);
   std::vector<Piece> pieces = pieces_of(rows.blocks);
   executor.for_each(pieces.size(), [&](std::size_t i) { search.count(pieces[i], rows); });
   for (Index a = 0; a < body.n; ++a) rows.begin[a + 1] += rows.begin[a];
@@ -207,6 +216,38 @@ Neighbours find_neighbours(const Points& points, std::span<const double> V,
     lowest = std::min(lowest, piece.lowest), highest = std::max(highest, piece.highest);
   }
   return rows;
+}
+
+std::vector<double> local_sizes(const Body& body) {
+  const particle::Edges edges = particle::make_edges(body);
+  std::vector<double> length(body.n, 0.0), count(body.n, 0.0);
+  for (Index a = 0; a < body.n; ++a) {
+    for (std::size_t k = edges.begin[a]; k < edges.begin[a + 1]; ++k) {
+      for (const Index end : {a, edges.other[k]}) {
+        length[end] += (body.position(edges.other[k]) - body.position(a)).norm();
+        ++count[end];
+      }
+    }
+  }
+  for (Index a = 0; a < body.n; ++a)
+    length[a] = count[a] > 0 ? std::max(1.0, length[a] / (count[a] * body.h)) : 1;
+  return length;
+}
+
+bool invert_moment(const Body& body, Mat3 K, double least, double* inverse) {
+  if (body.dim == 2)
+    K(2, 2) =
+        0.5 * K.trace();  // any value between the eigenvalues: leaves the plane's inverse alone
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(K);
+  const Vec3& lambda = eigen.eigenvalues();
+  if (!(lambda[0] > least * lambda[2])) return false;
+  const Mat3 K_inverse = eigen.eigenvectors() * lambda.cwiseInverse().asDiagonal() *
+                         eigen.eigenvectors().transpose();
+  for (int j = 0; j < body.dim; ++j) {
+    for (int i = 0; i < body.dim; ++i)
+      inverse[j * body.stride + i] = 0.5 * (K_inverse(i, j) + K_inverse(j, i));
+  }
+  return true;
 }
 
 DirectedRows directed_rows(const Neighbours& rows) {

@@ -43,11 +43,21 @@ DirectedRows directed_rows(const Neighbours& rows);
 
 /// Finds all pairs closer than the kernel's support with a grid of cells, in time linear in n,
 /// and weighs them; blocks as blocks_of() cuts them. V: volumes of the particles, with
-/// thickness [m^3]; penalty: psi E [Pa]; 0 leaves `stiffness` empty. Throws InputError (key
-/// tlsph.support) where neighbours do not span the space, so that K_a has no inverse: the
-/// support must grow.
+/// thickness [m^3]; penalty: psi E [Pa]; 0 leaves `stiffness` empty. sizes: R_a over the
+/// kernel's radius, of every particle; a pair has the mean of both, R_ab = (R_a + R_b)/2, in
+/// place of R; empty: R everywhere. Throws InputError (key tlsph.support) where neighbours do
+/// not span the space, so that K_a has no inverse: the support must grow.
 Neighbours find_neighbours(const Points& points, std::span<const double> V,
-                           const Kernel& kernel, double penalty, const Executor& executor);
+                           const Kernel& kernel, double penalty, const Executor& executor,
+                           std::span<const double> sizes = {});
+
+/// For arrangements whose spacing varies: the mean length of the triangulation's edges at each
+/// particle over the body's mean spacing h, but not below 1.
+std::vector<double> local_sizes(const Body& body);
+
+/// (V_a K_a)^-1 of V_a K_a into padded columns; false where its eigenvalues differ by more than
+/// the factor 1/least, in which case nothing is written.
+bool invert_moment(const Body& body, Mat3 K, double least, double* inverse);
 
 /// Contiguous ranges of particles, the same for every number of threads: as many as are at
 /// least 512 particles and 2 R thick along the body's longest axis, beyond four at least 3 R,
