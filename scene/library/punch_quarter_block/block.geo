@@ -1,6 +1,8 @@
 // Quarter of a block: side x side x height, 0 <= X, Y <= side, 0 <= Z <= height, its top divided at X, Y = punch.
 // h, structured and the lengths may be set from outside. With h = side/n, n a multiple of 3, and punch = side/3 the lattice is even.
-DefineConstant[ h = 0.0001, structured = 1, side = 0.001, height = 0.001, punch = 0.001/3 ];
+// grade > 1 (finite elements): spacings shrink towards the punch's edge and towards the top, from the first to the last of each line
+// by nearly this factor.
+DefineConstant[ h = 0.0001, structured = 1, side = 0.001, height = 0.001, punch = 0.001/3, grade = 1 ];
 
 Point(1) = {0, 0, 0, h};  Point(2) = {punch, 0, 0, h};  Point(3) = {side, 0, 0, h};
 Point(4) = {0, punch, 0, h};  Point(5) = {punch, punch, 0, h};  Point(6) = {side, punch, 0, h};
@@ -52,9 +54,16 @@ Surface Loop(3) = {3, 7, 10, 12, 17, 19};  Volume(3) = {3};
 Surface Loop(4) = {4, 8, 12, 14, 18, 20};  Volume(4) = {4};
 
 If (structured)
-  Transfinite Curve {1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23} = Max(1, Round(punch/h)) + 1;
-  Transfinite Curve {2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24} = Max(1, Round((side - punch)/h)) + 1;
-  Transfinite Curve {25, 26, 27, 28, 29, 30, 31, 32, 33} = Max(1, Round(height/h)) + 1;
+  n1 = Max(1, Round(punch/h));  n2 = Max(1, Round((side - punch)/h));  n3 = Max(1, Round(height/h));
+  If (grade == 1)
+    Transfinite Curve {1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23} = n1 + 1;
+    Transfinite Curve {2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24} = n2 + 1;
+    Transfinite Curve {25, 26, 27, 28, 29, 30, 31, 32, 33} = n3 + 1;
+  Else
+    Transfinite Curve {1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23} = n1 + 1 Using Progression grade^(-1/n1);
+    Transfinite Curve {2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24} = n2 + 1 Using Progression grade^(1/n2);
+    Transfinite Curve {25, 26, 27, 28, 29, 30, 31, 32, 33} = n3 + 1 Using Progression grade^(-1/n3);
+  EndIf
   Transfinite Surface "*";
   Transfinite Volume "*";
 EndIf
