@@ -40,3 +40,16 @@ function(concord_room name kind)
   target_link_libraries(concord_${name} PRIVATE $<BUILD_INTERFACE:concord_settings>)
   target_compile_features(concord_${name} PUBLIC cxx_std_20)
 endfunction()
+
+# concord_unity(TARGET [BATCH]): BATCH sources (4) of the target in one compilation where CONCORD_UNITY is on. Most of
+# compiling here is the same headers and templates again for every file. Not for kernels: what is inlined where could
+# change their bits.
+function(concord_unity target)
+  set(batch 4)
+  if(ARGC GREATER 1)
+    set(batch ${ARGV1})
+  endif()
+  if(CONCORD_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
+  endif()
+endfunction()
