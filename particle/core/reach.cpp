@@ -2,8 +2,27 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace concord::particle {
+namespace {
+
+/// Where the workers' runs end, counted in particles from the first one.
+std::vector<std::int64_t> ends_of_runs(std::int64_t total, int workers, Overlap overlap) {
+  const double work =
+      static_cast<double>(total) + (workers - 1) * (overlap.below + overlap.above);
+  std::vector<std::int64_t> ends;
+  double end = 0;
+  for (int w = 0; w < workers; ++w) {
+    const double beside = (w > 0 ? overlap.below : 0) + (w + 1 < workers ? overlap.above : 0);
+    end += std::max(0.0, work / workers - beside);
+    ends.push_back(std::min(total, static_cast<std::int64_t>(std::llround(end))));
+  }
+  ends.back() = total;
+  return ends;
+}
+
+}  // namespace
 
 Reach::Reach(std::span<const Index> begin, std::span<const Index> other)
     : m_n(static_cast<Index>(begin.size()) - 1) {
@@ -35,16 +54,24 @@ std::size_t Reach::window(int levels) const {
   return std::bit_ceil(static_cast<std::size_t>(most));
 }
 
-std::vector<std::vector<ParticleRange>> deal(std::span<const ParticleRange> parts,
-                                             int workers) {
+double Reach::mean() const {
+  double sum = 0;
+  for (std::size_t c = 0; c < m_top.size(); ++c)
+    sum += m_top[c] - std::min(m_n, static_cast<Index>(c + 1) * chunk);
+  return m_top.empty() ? 0 : sum / static_cast<double>(m_top.size());
+}
+
+std::vector<std::vector<ParticleRange>> deal(std::span<const ParticleRange> parts, int workers,
+                                             Overlap overlap) {
   std::int64_t total = 0;
   for (const ParticleRange& part : parts) total += part.last - part.first;
+  const std::vector<std::int64_t> ends = ends_of_runs(total, workers, overlap);
   std::vector<std::vector<ParticleRange>> dealt(workers);
   std::int64_t before = 0;  // particles of earlier parts
   for (const ParticleRange& part : parts) {
     Index first = part.first;
     for (int w = 0; w < workers && first < part.last; ++w) {
-      const std::int64_t end = total * (w + 1) / workers - before + part.first;
+      const std::int64_t end = ends[w] - before + part.first;
       Index last = part.last;
       if (end < part.last) last = static_cast<Index>(end) / Reach::chunk * Reach::chunk;
       if (last <= first) continue;

@@ -27,6 +27,9 @@ class Reach {
   /// `levels` others further ahead, rounded up to a power of two.
   std::size_t window(int levels) const;
 
+  /// Particles that a row reaches ahead, in the mean: a slab of the sweep.
+  double mean() const;
+
   /// Rows that a loop does at a time.
   static constexpr Index chunk = 64;
 
@@ -35,8 +38,15 @@ class Reach {
   std::vector<Index> m_top, m_bottom;  ///< per chunk
 };
 
-/// The particles of `parts` dealt to `workers` in runs of about the same length, cut at whole
-/// chunks.
-std::vector<std::vector<ParticleRange>> deal(std::span<const ParticleRange> parts, int workers);
+/// What a sweep over a part does beside the part, at the end below it and above it, in
+/// particles' worth of work.
+struct Overlap {
+  double below = 0, above = 0;
+};
+
+/// The particles of `parts` dealt to `workers` in runs of about the same work, cut at whole
+/// chunks: the first worker has nothing beside its run below, the last one nothing above.
+std::vector<std::vector<ParticleRange>> deal(std::span<const ParticleRange> parts, int workers,
+                                             Overlap overlap = {});
 
 }  // namespace concord::particle

@@ -31,15 +31,15 @@ template <class Space> class Spaces {
   }
 
   /// work(space, part) for ranges that make up `parts`, cut at whole chunks, on all of the
-  /// executor's threads; as many spaces have been provided.
+  /// executor's threads; as many spaces have been provided. `overlap`: of the work on a part.
   template <class Work>
   void for_parts(std::span<const ParticleRange> parts, const Executor& executor,
-                 const Work& work) const {
+                 Overlap overlap, const Work& work) const {
     if (executor.threads() == 1) {
       for (const ParticleRange& part : parts) work(*m_spaces[0], part);
       return;
     }
-    const auto dealt = deal(parts, executor.threads());
+    const auto dealt = deal(parts, executor.threads(), overlap);
     executor.for_each(dealt.size(), [&](std::size_t w) {
       for (const ParticleRange& part : dealt[w]) work(*m_spaces[w], part);
     });

@@ -19,7 +19,7 @@ struct Viscosity {
 
   /// J sigma_visc F^-T with rho J = rho0: (linear + quadratic |tr d|) d F^-T, d = sym(dF/dt
   /// F^-1); H = F - I, rate = dF/dt.
-  Mat3 stress(const Mat3& H, const Mat3& rate) const {
+  CONCORD_INLINE Mat3 stress(const Mat3& H, const Mat3& rate) const {
     const Mat3 inverse = (Mat3::Identity() + H).inverse(), l = rate * inverse;
     const Mat3 d = 0.5 * (l + l.transpose());
     return (linear + quadratic * std::abs(d.trace())) * d * inverse.transpose();

@@ -58,6 +58,7 @@ class DelaunayModel final : public ForceModel {
   PairTangent contact_tangent(Index a, Index k, std::span<const double> u,
                               std::span<const Mat3> H) const;
   void provide_spaces(const Executor& executor);
+  Overlap overlap() const;
 
   bool m_contact = false;
   ContactFactors m_factors{0, 0};

@@ -214,5 +214,32 @@ TEST(Deal, CoversThePartsOnceInOrder) {
   }
 }
 
+TEST(Deal, GivesLessToWorkersWithWorkBesideTheirRun) {
+  const ParticleRange all{0, 100'000};
+  const Overlap overlap{3000, 1000};
+  for (const int workers : {2, 3, 5}) {
+    const auto dealt = deal({&all, 1}, workers, overlap);
+    std::vector<double> work;
+    for (int w = 0; w < workers; ++w) {
+      ASSERT_EQ(dealt[w].size(), 1u);
+      EXPECT_EQ(dealt[w][0].first, w > 0 ? dealt[w - 1][0].last : 0);
+      work.push_back(dealt[w][0].last - dealt[w][0].first + (w > 0 ? overlap.below : 0) +
+                     (w + 1 < workers ? overlap.above : 0));
+    }
+    EXPECT_EQ(dealt.back()[0].last, all.last);
+    for (const double one : work) EXPECT_NEAR(one, work[0], 2 * Reach::chunk);
+  }
+  // More overlap than particles: everything is still done once.
+  const auto dealt = deal({&all, 1}, 3, {1e6, 1e6});
+  Index done = 0;
+  for (const auto& ranges : dealt) {
+    for (const ParticleRange& r : ranges) {
+      EXPECT_EQ(r.first, done);
+      done = r.last;
+    }
+  }
+  EXPECT_EQ(done, all.last);
+}
+
 }  // namespace
 }  // namespace concord::particle::delaunay
