@@ -12,11 +12,11 @@ namespace {
 constexpr double none = std::numeric_limits<double>::infinity();
 
 /// Ratio of V_a K_a's eigenvalues below which what is left around a particle counts as not
-/// spanning the space. A particle in a right-angled corner, which must stand, has (pi - 2)/(pi
-/// + 2) = .22 in the plane; two neighbours at one distance, seen under an angle of theta, have
-/// tan^2(theta/2): .2 is at 48 degrees. Corrected gradients, and with them the highest
-/// frequency, grow as the inverse root.
-constexpr double least_ratio = 0.2;
+/// spanning the space. Right-angled corners, which must stand, have (pi - 2)/(pi + 2) = .22 in
+/// the plane and (pi - 2)/(pi + 4) = .16 in space under any kernel; two neighbours at one
+/// distance, seen under an angle of theta, have tan^2(theta/2): .15 is at 42 degrees. Corrected
+/// gradients, and with them the highest frequency, grow as the inverse root.
+constexpr double least_ratio = 0.15;
 
 /// How many of the springs [begin, end) are at least as long as their limits, squares of
 /// lengths.
