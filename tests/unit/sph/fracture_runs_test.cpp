@@ -95,8 +95,11 @@ scene::Result run_plate(const scene::Problem& problem,
                         const std::map<std::string, std::string>& more = {}) {
   scene::RunRequest request;
   request.h = 0.5e-3;
-  request.settings = {
-      {"smoothing", "local"}, {"penalty", "potential"}, {"support", "2.4"}, {"courant", "0.1"}};
+  request.settings = {{"smoothing", "local"},
+                      {"penalty", "potential"},
+                      {"support", "2.4"},
+                      {"psi", "2"},
+                      {"courant", "0.1"}};
   for (const auto& [key, value] : more) request.settings[key] = value;
   scene::Result result;
   scene::MethodRegistry::instance().find("tlsph").run(problem, request, result);
