@@ -100,13 +100,18 @@ std::span<const Index> rest_from(const std::vector<std::vector<Index>>& paths, I
 }  // namespace
 
 Vec3 CrackBody::centroid(Index triangle) const {
-  const auto& [a, b, c] = triangles[triangle];
-  return (X[a] + X[b] + X[c]) / 3;
+  const Corners& corners = triangles[triangle];
+  Vec3 sum = Vec3::Zero();
+  for (const Index a : corners) sum += X[a];
+  if (corners.size() == 4) sum[2] = 0;
+  return sum / static_cast<double>(corners.size());
 }
 
 double CrackBody::area(Index triangle) const {
-  const auto& [a, b, c] = triangles[triangle];
-  return 0.5 * (X[b] - X[a]).cross(X[c] - X[a]).norm();
+  const Corners& corners = triangles[triangle];
+  const Vec3 p = X[corners[1]] - X[corners[0]], q = X[corners[2]] - X[corners[0]];
+  if (corners.size() == 3) return 0.5 * p.cross(q).norm();
+  return std::abs(p.cross(q).dot(X[corners[3]] - X[corners[0]])) / (6 * thickness);
 }
 
 Groups::Groups(std::size_t points) : m_parent(points) {
@@ -135,8 +140,7 @@ void CrackTip::add(const DeadSimplex& dead) {
     foremost = std::max(foremost, m_foremost[m_groups.find(m_root)]);
     m_groups.join(m_root, vertices[0]);
   }
-  m_groups.join(vertices[0], vertices[1]);
-  m_groups.join(vertices[0], vertices[2]);
+  for (const Index vertex : vertices) m_groups.join(vertices[0], vertex);
   const Index group = m_groups.find(vertices[0]);
   m_foremost[group] = foremost;
   if (dead.t != before_start && connected(dead.simplex))
@@ -214,10 +218,10 @@ Fragments fragments(const CrackBody& body, std::span<const DeadSimplex> dead) {
   Groups groups(body.X.size());
   for (std::size_t t = 0; t < body.triangles.size(); ++t) {
     if (gone[t] != 0) continue;
-    const auto& [a, b, c] = body.triangles[t];
-    held[a] = held[b] = held[c] = 1;
-    groups.join(a, b);
-    groups.join(a, c);
+    for (const Index a : body.triangles[t]) {
+      held[a] = 1;
+      groups.join(body.triangles[t][0], a);
+    }
   }
   Fragments result;
   for (Index a = 0; a < static_cast<Index>(body.X.size()); ++a) {

@@ -11,13 +11,29 @@
 
 namespace concord::particle {
 
-/// Particles and the triangles between them.
+/// Corners of a triangle or, in 3D, a tetrahedron.
+class Corners {
+ public:
+  Corners(Index a, Index b, Index c) : m_at{a, b, c, -1}, m_count(3) {}
+  Corners(Index a, Index b, Index c, Index d) : m_at{a, b, c, d}, m_count(4) {}
+  const Index* begin() const { return m_at.data(); }
+  const Index* end() const { return begin() + m_count; }
+  Index operator[](std::size_t k) const { return m_at[k]; }
+  std::size_t size() const { return static_cast<std::size_t>(m_count); }
+
+ private:
+  std::array<Index, 4> m_at;
+  int m_count;
+};
+
+/// Particles and the triangles between them; or tetrahedra of a slab, seen along its thickness.
 struct CrackBody {
   std::vector<Vec3> X;  ///< [m]
-  std::vector<std::array<Index, 3>> triangles;
+  std::vector<Corners> triangles;
+  double thickness = 1;  ///< of a slab, along Z [m]
 
-  Vec3 centroid(Index triangle) const;
-  double area(Index triangle) const;  ///< [m^2]
+  Vec3 centroid(Index triangle) const;  ///< in 3D its projection along Z
+  double area(Index triangle) const;    ///< in 3D the volume over the thickness [m^2]
 };
 
 /// Where a crack begins.

@@ -40,8 +40,18 @@ CrackQuantities::CrackQuantities(const scene::Problem& problem, const Body& body
       m_at_end(body.n, 0), m_held(body.n, 0) {
   for (Index a = 0; a < body.n; ++a) m_body.X.push_back(body.position(a));
   const std::vector<Index>& vertices = body.triangulation.simplices;
-  for (std::size_t t = 0; t < body.triangulation.size(); ++t)
-    m_body.triangles.push_back({vertices[3 * t], vertices[3 * t + 1], vertices[3 * t + 2]});
+  const auto corners = static_cast<std::size_t>(body.dim) + 1;
+  for (std::size_t t = 0; t < body.triangulation.size(); ++t) {
+    const Index* v = &vertices[corners * t];
+    m_body.triangles.push_back(body.dim == 3 ? Corners(v[0], v[1], v[2], v[3])
+                                             : Corners(v[0], v[1], v[2]));
+  }
+  if (body.dim == 3) {
+    const auto [low, high] =
+        std::minmax_element(m_body.X.begin(), m_body.X.end(),
+                            [](const Vec3& p, const Vec3& q) { return p[2] < q[2]; });
+    m_body.thickness = (*high)[2] - (*low)[2];
+  }
   for (const PrescribedDof& dof : constraints.dofs()) m_held[dof.particle] = 1;
   const scene::Fracture& fracture = *problem.fracture;
   if (!fracture.arrival.empty()) {
@@ -134,10 +144,16 @@ void CrackQuantities::write(const std::filesystem::path& file) const {
   scene::HistoryWriter writer(file, {"t_s", "x1_m", "y1_m", "x2_m", "y2_m", "x3_m", "y3_m"});
   std::vector<double> row;
   for (const DeadSimplex& dead : m_fracturing.record().dead) {
-    row.assign(1, dead.t == before_start ? 0.0 : dead.t);
-    for (const Index a : m_body.triangles[dead.simplex])
-      row.insert(row.end(), {m_body.X[a][0], m_body.X[a][1]});
-    writer.append(row);
+    const Corners& corners = m_body.triangles[dead.simplex];
+    const bool solid = corners.size() == 4;  // told by its faces, which cover what it covers
+    for (std::size_t left_out = solid ? 0 : 3; left_out < 4; ++left_out) {
+      row.assign(1, dead.t == before_start ? 0.0 : dead.t);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec3& X = m_body.X[corners[k]];
+        if (k != left_out) row.insert(row.end(), {X[0], X[1]});
+      }
+      writer.append(row);
+    }
   }
 }
 

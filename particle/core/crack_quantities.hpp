@@ -19,7 +19,8 @@ namespace concord::particle {
 /// Sec. 2.4.
 double rayleigh_speed(const scene::Material& material, Dimension dimension);
 
-/// Follows the cracks of a run. Plane bodies. References must outlive the object.
+/// Follows the cracks of a run; those of a body of three dimensions as a slab in X-Y, seen
+/// along Z. References must outlive the object.
 class CrackQuantities {
  public:
   /// Throws InputError for an arrival group that is none.
@@ -31,7 +32,7 @@ class CrackQuantities {
   void append(std::vector<double>& values);
   /// Everything for summary.json; what is not there (no arrival yet, no branch) is left out.
   std::map<std::string, double> quantities();
-  /// Dead triangles with their times and corners.
+  /// Dead triangles with their times and corners; in 3D the faces of dead tetrahedra.
   void write(const std::filesystem::path& file) const;
 
  private:
