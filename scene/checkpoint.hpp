@@ -22,9 +22,7 @@ namespace concord::scene {
 /// and is not there, or has another size than expected, throws InputError with the file's name.
 class Checkpoint {
  public:
-  /// Begins to save. The state goes to a temporary beside `file`, and under the file's name
-  /// when finish() is called, not before; without finish() the temporary is removed again.
-  /// Throws OutputError, as all saving does, when the disk is full or the folder read-only.
+  /// Begins to save, in memory; finish() writes `file`.
   static Checkpoint to(const std::filesystem::path& file);
   /// Opens a state that was saved.
   static Checkpoint from(const std::filesystem::path& file);
@@ -55,15 +53,17 @@ class Checkpoint {
   void fixed(const std::string& name, std::span<Index> values);
   void fixed(const std::string& name, std::span<char> values);
 
-  /// While restoring: number of values saved under a name.
+  /// While restoring: whether anything was saved under a name, and how many values.
+  bool has(const std::string& name) const;
   std::size_t size(const std::string& name) const;
 
-  /// Ends saving: all of it is on the disk, under the file's name. Nothing while restoring.
+  /// Ends saving: writes the file by way of a temporary beside it, so that one that was there
+  /// is replaced by a whole one or not at all. Nothing while restoring. Throws OutputError when
+  /// the disk is full or the folder read-only.
   void finish();
 
  private:
   Checkpoint(std::filesystem::path file, bool restores);
-  void open();
   /// Values in memory, of an HDF5 type.
   struct Block {
     std::int64_t type;
@@ -73,9 +73,8 @@ class Checkpoint {
   void transfer(const std::string& name, const Block& block);
   void read(const std::string& name, const Block& block) const;
   void write(const std::string& name, const Block& block);
-  void drop() noexcept;
 
-  std::filesystem::path m_file, m_temporary;
+  std::filesystem::path m_file;
   bool m_restores;
   std::int64_t m_handle = -1;  ///< HDF5's, -1: closed
 };

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
 namespace concord::scene {
 namespace fs = std::filesystem;
@@ -80,15 +79,9 @@ HistoryWriter continue_history(const fs::path& file, const std::vector<std::stri
   return writer;
 }
 
-void cut_half_row(const fs::path& file) noexcept {
-  try {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const std::size_t last = text.rfind('\n');
-    if (!stream.bad() && last != std::string::npos && last + 1 < text.size())
-      fs::resize_file(file, last + 1);
-  } catch (const std::exception&) {  // it stays as it is
-  }
+void cut_back(const fs::path& file, std::uintmax_t bytes) noexcept {
+  std::error_code ignored;
+  if (fs::file_size(file, ignored) > bytes && !ignored) fs::resize_file(file, bytes, ignored);
 }
 
 }  // namespace concord::scene

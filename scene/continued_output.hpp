@@ -51,7 +51,7 @@ FrameList keep_frames(const std::filesystem::path& folder, std::span<const doubl
 HistoryWriter continue_history(const std::filesystem::path& file,
                                const std::vector<std::string>& columns, std::uintmax_t bytes);
 
-/// After a row that could not be written: cuts what there is of it.
-void cut_half_row(const std::filesystem::path& file) noexcept;
+/// After a row that could not be written: cuts what came after the first `bytes`.
+void cut_back(const std::filesystem::path& file, std::uintmax_t bytes) noexcept;
 
 }  // namespace concord::scene

@@ -2,7 +2,7 @@
 
 #include "scene/build_info.hpp"
 #include "scene/continued_output.hpp"
-#include "scene/hdf5_handle.hpp"
+#include "scene/hdf5_file.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -133,25 +133,12 @@ void write_frame(const std::filesystem::path& file, double time, std::span<const
                  const std::vector<FrameField>& point_fields,
                  std::span<const Index> connectivity, std::span<const Index> offsets,
                  std::span<const unsigned char> types) {
-  const std::filesystem::path temporary = file.string() + ".part";
-  try {
-    writing(file, [&] {
-      const QuietHdf5 quiet;
-      const Hdf5Handle handle(
-          H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose,
-          "create " + temporary.string());
-      write_grid(handle, points, point_fields,
-                 cells_of(points.size(), connectivity, offsets, types));
-      write_provenance(handle, time);
-      // Closing does not tell when the disk is full.
-      hdf5_check(H5Fflush(handle, H5F_SCOPE_GLOBAL), "write " + temporary.string());
-    });
-    std::filesystem::rename(temporary, file);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  const QuietHdf5 quiet;
+  const Hdf5Handle handle = new_hdf5_file();
+  write_grid(handle, points, point_fields,
+             cells_of(points.size(), connectivity, offsets, types));
+  write_provenance(handle, time);
+  write_hdf5_file(handle, file);
 }
 
 namespace {

@@ -26,6 +26,8 @@ class Hdf5Handle {
     if (m_id >= 0) m_close(m_id);
   }
   operator hid_t() const noexcept { return m_id; }
+  /// The caller closes it from now on.
+  hid_t release() noexcept { return std::exchange(m_id, -1); }
 
  private:
   hid_t m_id;

@@ -43,8 +43,12 @@ bool Checkpoints::due() const {
 void Checkpoints::keep_facts(scene::Checkpoint& state) {
   std::string found, saved;
   for (const auto& [name, now] : m_facts()) {
+    const std::string item = "fact." + name;
     std::string value = now;
-    state.item("fact." + name, value);
+    if (!state.restores() || state.has(item))
+      state.item(item, value);
+    else
+      value.clear();
     if (value == now) continue;
     const auto [mine, its] = first_difference(now, value);
     found += fmt::format("{}{}: {}", found.empty() ? "" : "; ", name, mine);
@@ -155,13 +159,14 @@ void Recorder::Account::keep(scene::Checkpoint& state) {
 void Recorder::keep(scene::Checkpoint& state) {
   m_account.keep(state);
   if (m_folder.empty()) return;
-  long bytes = state.restores() ? 0 : static_cast<long>(file_size(history_file()));
+  auto bytes = static_cast<long>(m_history_bytes);
   std::vector<double> times;
   for (const auto& [name, time] : m_frames) times.push_back(time);
   state.item("recorder.history_bytes", bytes);
   state.item("recorder.frame_times", times);
   if (!state.restores()) return;
   m_history = scene::continue_history(history_file(), columns(), bytes);
+  m_history_bytes = bytes;
   if (m_write_frames) m_frames = scene::keep_frames(m_folder, times);
 }
 

@@ -24,8 +24,10 @@ Recorder::Recorder(const scene::Problem& problem, ForceModel& model,
   m_steady = !loads.depend_on_time();
   m_unloaded = loads.none();
   if (folder.empty() || resumes) return;
-  scene::writing(history_file(),
-                 [&] { m_history = scene::HistoryWriter(history_file(), columns()); });
+  scene::writing(history_file(), [&] {
+    m_history = scene::HistoryWriter(history_file(), columns());
+    m_history_bytes = file_size(history_file());
+  });
 }
 
 std::vector<std::string> Recorder::columns() const {
@@ -140,9 +142,12 @@ void Recorder::add_row(const State& state) {
   if (m_hourglass) m_values.insert(m_values.end(), {m_account.share, m_account.checkerboard});
   try {
     scene::writing(history_file(), [&] { m_history.append(m_values); });
+    std::error_code gone;  // someone may have moved it away
+    const std::uintmax_t bytes = file_size(history_file(), gone);
+    if (!gone) m_history_bytes = bytes;
   } catch (const scene::OutputError&) {
     m_history = {};  // what it still holds goes first
-    scene::cut_half_row(history_file());
+    scene::cut_back(history_file(), m_history_bytes);
     throw;
   }
 }

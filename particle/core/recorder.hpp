@@ -84,6 +84,7 @@ class Recorder {
   std::filesystem::path m_folder;
   bool m_write_frames;
   scene::HistoryWriter m_history;
+  std::uintmax_t m_history_bytes = 0;  ///< all rows that are there as a whole
   scene::FrameList m_frames;
   std::vector<Mat3> m_H;
   std::vector<double> m_values;
