@@ -36,7 +36,7 @@ Checkpoints::Checkpoints(const scene::Keeping& keeping, std::function<RunFacts()
 
 bool Checkpoints::due() const {
   const double passed = std::chrono::duration<double>(Clock::now() - m_last).count();
-  return passed >= std::max(m_keeping.interval, 50 * m_cost);
+  return m_keeping.interval == 0 || passed >= std::max(m_keeping.interval, 50 * m_cost);
 }
 
 /// Throws InputError for facts that are not those of the checkpoint.
@@ -100,6 +100,13 @@ void keep(FractureRecord& record, scene::Checkpoint& state) {
   state.item("record.dead", dead);
   state.item("record.released", record.released);
   if (!state.restores()) return;
+  const auto negative = [](const std::vector<Index>& list) {
+    return std::any_of(list.begin(), list.end(), [](Index k) { return k < 0; });
+  };
+  if (a.size() != t_broken.size() || b.size() != a.size() || dead.size() != t_dead.size() ||
+      negative(a) || negative(b) || negative(dead))
+    throw InputError({state.file().string()}, "record", "lists that do not fit together",
+                     "a checkpoint that this program wrote");
   record.broken.clear();
   for (std::size_t k = 0; k < t_broken.size(); ++k)
     record.broken.push_back({t_broken[k], a[k], b[k]});
@@ -178,6 +185,7 @@ void Leapfrog::keep(scene::Checkpoint& state, Recorder& recorder, LeapfrogOutcom
   state.item("dt_last", m_dt_last);
   state.item("dt", m_dt);
   state.item("gradient", m_gradient);
+  state.item("dead_at_estimate", m_dead);
   state.item("row_at", m_row_at);
   state.item("frame_at", m_frame_at);
   state.item("row_due", m_row_due);

@@ -24,7 +24,8 @@ class Checkpoints {
 
   bool resumes() const { return m_keeping.resume; }
   /// Whether enough wall time has gone by since the last one: the interval asked for, and fifty
-  /// times what the last one took, so that all of them take at most 2 % of a run.
+  /// times what the last one took, so that all of them take at most 2 % of a run. Always with
+  /// an interval of 0.
   bool due() const;
 
   using Items = std::function<void(scene::Checkpoint&)>;

@@ -63,6 +63,11 @@ CrackQuantities::CrackQuantities(const scene::Problem& problem, const Body& body
   m_start = CrackStart{crack.to, (crack.to - crack.from).normalized()};
   for (const Vec3& X : m_body.X)
     m_ligament = std::max(m_ligament, (X - m_start->tip).dot(m_start->direction));
+  if (!(m_ligament > 0)) {
+    throw InputError(
+        fracture.where, "fracture.crack", "a pre-crack with nothing of the body ahead",
+        "a tip (to) that the body goes on from, in the direction from the mouth (from)");
+  }
   m_tip.emplace(m_body, *m_start);
 }
 

@@ -176,6 +176,11 @@ void Leapfrog::write(Recorder& recorder, bool row, bool frame) {
   m_frame_due = false;
 }
 
+/// Simplices that are gone.
+long Leapfrog::dead() const {
+  return m_fracturing == nullptr ? 0 : static_cast<long>(m_fracturing->record().dead.size());
+}
+
 void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
                        LeapfrogOutcome& outcome) {
   const double end = options.end_time;
@@ -185,6 +190,7 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
   if (!(m_dt > 0)) {
     m_dt = options.dt_fixed > 0 ? options.dt_fixed : critical_step(options.dt_factor);
     m_gradient = largest_gradient();
+    m_dead = dead();
   }
   while (m_t < end && !outcome.settled) {
     const auto begin = Clock::now();
@@ -203,9 +209,10 @@ void Leapfrog::advance(const LeapfrogOptions& options, Recorder& recorder,
     outcome.dt = size;
     if (look && options.dt_fixed <= 0) {
       const double now = largest_gradient();
-      if (std::abs(now - m_gradient) > options.reestimate_at) {
+      if (std::abs(now - m_gradient) > options.reestimate_at || dead() != m_dead) {
         m_dt = critical_step(options.dt_factor);
         m_gradient = now;
+        m_dead = dead();
       }
     }
     outcome.settled = look && options.stop_at_residual > 0 && m_t >= m_ramp &&

@@ -23,7 +23,7 @@ struct LeapfrogOptions {
   /// omega_max is asked for again when the largest |H| of any particle changed by this much
   /// since the last estimate. |H|: the largest stretch of an edge of the triangulation, or the
   /// norm of the model's own gradients where particles lie inside the body: simplices do not
-  /// reach its faces then, and one layer has none.
+  /// reach its faces then, and one layer has none. And when something has broken since.
   double reestimate_at = 0.05;
   /// Regions still exactly at rest are left out, by models that can (RestRegions); the same
   /// bits.
@@ -98,6 +98,7 @@ class Leapfrog {
   void drift(double dt);
   double critical_step(double dt_factor);
   double largest_gradient();
+  long dead() const;
   bool settled(double fraction);
 
   const scene::Problem& m_problem;
@@ -123,6 +124,7 @@ class Leapfrog {
   long m_next_row = 1, m_next_frame = 1;        ///< numbers, of those at even times
   double m_dt = 0;                              ///< longest step now [s]; 0: not asked for yet
   double m_gradient = 0;                        ///< largest, when it was asked for
+  long m_dead = 0;                              ///< simplices gone, when it was asked for
 };
 
 }  // namespace concord::particle

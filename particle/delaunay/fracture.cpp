@@ -30,9 +30,9 @@ FractureModel::FractureModel(const Body& body, const scene::Problem& problem,
   m_law.softening = 0.01 * m_l * m_l;
   m_law.by_energy = problem.fracture->criterion == scene::FractureCriterion::energy;
   m_viscous.assign(body.X.size(), 0.0);
-  m_kept_viscous = m_viscous;
+  m_kept_viscous = m_still = m_viscous;
   set_limits(problem);
-  cut(problem.fracture->cracks);
+  cut(*problem.fracture);
   m_sweep = FractureSweep::make(m_body, m_network, m_law);
 }
 
@@ -46,10 +46,24 @@ void FractureModel::set_limits(const scene::Problem& problem) {
   }
 }
 
-void FractureModel::cut(const std::vector<scene::PreCrack>& cracks) {
-  for (const scene::PreCrack& crack : cracks) {
+/// Throws InputError for a cut through nothing, unless it tells where a slit of the mesh ends.
+void FractureModel::cut(const scene::Fracture& fracture) {
+  const auto ends_a_slit = [&](const Vec3& tip) {
+    for (Index a = 0; a < m_body.n; ++a) {
+      const Vec3 to_tip = tip - m_body.position(a);
+      if (m_body.triangulation.on_boundary[a] != 0 && to_tip.head<2>().norm() < m_body.h)
+        return true;
+    }
+    return false;
+  };
+  for (const scene::PreCrack& crack : fracture.cracks) {
     const std::vector<Index> bonds = m_network.crossing(crack.from, crack.to),
                              simplices = m_network.simplices_of(bonds);
+    if (bonds.empty() && !ends_a_slit(crack.to)) {
+      throw InputError(fracture.where, "fracture.crack", "a pre-crack that crosses no bond",
+                       "a segment through the body, longer than its spacing; or one that ends "
+                       "where a slit of the geometry does");
+    }
     for (const Index t : simplices) m_record.dead.push_back({before_start, t});
     unlimit(bonds);
     unlimit(m_network.remove(simplices));
@@ -69,7 +83,7 @@ void FractureModel::sweep(ParticleRange part, std::span<const double> u,
 
 void FractureModel::forces(std::span<const double> u, std::span<const double> v,
                            std::span<double> f, const Executor&) {
-  sweep({0, m_body.n}, u, v, f, m_viscous, nullptr);
+  sweep({0, m_body.n}, u, v.empty() ? m_still : v, f, m_viscous, nullptr);
 }
 
 /// Where bonds fail, the forces near them are computed once more.

@@ -50,7 +50,7 @@ class FractureModel final : public ForceModel, public Fracturing {
     std::span<const double> u, v;
   };
   void set_limits(const scene::Problem& problem);
-  void cut(const std::vector<scene::PreCrack>& cracks);
+  void cut(const scene::Fracture& fracture);
   void sweep(ParticleRange part, std::span<const double> u, std::span<const double> v,
              std::span<double> f, Column& viscous, std::vector<Index>* failed);
   std::vector<Index> break_bonds(const std::vector<Index>& bonds, const Step& step);
@@ -69,6 +69,7 @@ class FractureModel final : public ForceModel, public Fracturing {
   BreakingLaw m_law;
   std::unique_ptr<FractureSweep> m_sweep;
   std::vector<Index> m_failed;
+  Column m_still;                    ///< velocities, where none are given
   Column m_viscous, m_kept_viscous;  ///< of the last forces() and the last advance() [N]
   FractureRecord m_record;
   std::optional<TangentAssembly> m_tangent;

@@ -13,6 +13,9 @@ high = (height + strip)/2;
 If (low < 1e-9*height || strip < 1e-9*height)
   Error("the strip does not fit into the plate");
 EndIf
+If (slit != 0 && slit != 1)
+  Error("slit is 0 or 1");
+EndIf
 
 Point(1) = {0, 0, 0, edge_spacing};
 Point(2) = {width, 0, 0, edge_spacing};

@@ -223,4 +223,31 @@ TEST(RayleighSpeed, ClosedForm) {
               ratio, 1e-12);
 }
 
+// A slab of prisms over the lattice, each in three tetrahedra: seen along Z it measures what
+// the lattice does.
+TEST(Crack, ASlabOfTetrahedraIsMeasuredFromAbove) {
+  const CrackBody plane = lattice();
+  const auto n = static_cast<Index>(plane.X.size());
+  CrackBody slab;
+  slab.thickness = 0.5;
+  for (const double Z : {0.0, 0.5}) {
+    for (const Vec3& X : plane.X) slab.X.emplace_back(X[0], X[1], Z);
+  }
+  std::vector<DeadSimplex> flat, solid;
+  for (Index t = 0; t < static_cast<Index>(plane.triangles.size()); ++t) {
+    const Corners& v = plane.triangles[t];
+    slab.triangles.emplace_back(v[0], v[1], v[2], v[2] + n);
+    slab.triangles.emplace_back(v[0], v[1], v[1] + n, v[2] + n);
+    slab.triangles.emplace_back(v[0], v[0] + n, v[1] + n, v[2] + n);
+    if (t % 31 != 7) continue;
+    flat.push_back({1, t});
+    for (Index k = 0; k < 3; ++k) solid.push_back({1, 3 * t + k});
+  }
+  ASSERT_GT(flat.size(), 3u);
+  EXPECT_NEAR(dead_area(slab, solid), dead_area(plane, flat), 1e-12 * dead_area(plane, flat));
+  EXPECT_EQ(slab.centroid(0)[2], 0);
+  EXPECT_EQ(fragments(slab, solid).pieces, fragments(plane, flat).pieces);
+  EXPECT_EQ(fragments(slab, solid).isolated, 2 * fragments(plane, flat).isolated);
+}
+
 }  // namespace concord::particle

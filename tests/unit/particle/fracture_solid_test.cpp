@@ -85,7 +85,7 @@ void damage(FractureModel& model, const Body& body, Index lone) {
   const std::size_t at = 4 * static_cast<std::size_t>(lone);
   for (int side = 0; side < 6; ++side) {
     Column u(body.X.size(), 0.0), v = u, f = u;
-    u[at + side % 3] = (side < 3 ? 0.25 : -0.25) * body.h;
+    u[at + side % 3] = (side < 3 ? 0.35 : -0.35) * body.h;
     model.advance(1e-6 * side, 1e-8, u, v, f, Executor(1));
   }
 }
@@ -123,7 +123,7 @@ TEST(FractureNetworkSolid, WhatIsLeftIsTheNetworkOfTheTetrahedraLeft) {
     for (const Index end : {a, b}) {
       const Vec3 zeta =
           bond == known.end() ? Vec3(Vec3::Zero()) : expected.zeta(bond->second, end);
-      ASSERT_EQ(network.zeta(k, end), zeta);
+      ASSERT_TRUE(network.zeta(k, end) == zeta);
     }
     ASSERT_EQ(network.rows().area_over_length[k],
               bond == known.end() ? 0.0 : expected.rows().area_over_length[bond->second]);
@@ -258,7 +258,7 @@ TEST(FractureSolid, AParticleLeftAloneCarriesNoStress) {
     const std::size_t at = 4 * static_cast<std::size_t>(a);
     const Vec3 f_a(f[at], f[at + 1], f[at + 2]);
     ASSERT_TRUE(f_a.allFinite());
-    if (a == lone) EXPECT_EQ(f_a, Vec3::Zero());
+    EXPECT_TRUE(a != lone || f_a.isZero(0));
     sum += f_a;
     scale += f_a.norm();
   }
@@ -285,27 +285,42 @@ TEST(FractureSolid, ABarBreaksAtTheCriterionsStrain) {
   }
 }
 
+// What an unbroken slab tells of its cracks.
+TEST(FractureSolid, AnUnbrokenSlabIsOnePiece) {
+  scene::Problem problem = scene::read_problem("pmma_plate_3d", {{"end_time", "0.5 us"}});
+  problem.fracture->cracks.clear();
+  for (const char* method : {"delaunay", "cbm"}) {
+    scene::RunRequest request;
+    request.h = 1e-3;
+    scene::Result result;
+    scene::MethodRegistry::instance().find(method).run(problem, request, result);
+    EXPECT_EQ(result.quantities.at("fragments"), 1) << method;
+    EXPECT_EQ(result.quantities.at("isolated_particles"), 0) << method;
+    EXPECT_EQ(result.quantities.at("dead_area"), 0) << method;
+  }
+}
+
 namespace {
 
 scene::Result run(const scene::Problem& problem,
                   const std::map<std::string, std::string>& settings) {
   scene::RunRequest request;
   request.h = 0.25;
-  request.perturb = 0.2;
-  request.seed = 2;
   request.settings = settings;
   scene::Result result;
   scene::MethodRegistry::instance().find("delaunay").run(problem, request, result);
   return result;
 }
 
-/// A free beam whose halves fly apart.
+/// A free beam whose halves fly apart; bonds break at a strain of .05. A lattice: see the
+/// limits in the method's README.
 scene::Problem torn_beam() {
   scene::Problem problem = beam();
+  problem.fracture->energy_release_rate /= 4;
   problem.initial_velocity.emplace();
-  problem.initial_velocity->component[0] = scene::Expression("0.5*Z*Y", {});
-  problem.initial_velocity->component[2] = scene::Expression("12*tanh(Z - 3)", {});
-  problem.end_time = 0.15;
+  problem.initial_velocity->component[0] = scene::Expression("0.2*Z*Y", {});
+  problem.initial_velocity->component[2] = scene::Expression("2.5*tanh(Z - 3)", {});
+  problem.end_time = 0.2;
   problem.history_rows = 60;
   problem.frames = 0;
   return problem;
@@ -315,7 +330,7 @@ scene::Problem torn_beam() {
 
 TEST(FractureSolid, ATornBeamFliesApartAndKeepsItsMomenta) {
   const scene::Result result =
-      run(torn_beam(), {{"beta", "0"}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"dt_factor", "0.2"}});
+      run(torn_beam(), {{"beta", "0"}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"courant", "0.1"}});
   EXPECT_GT(result.quantities.at("broken_bonds"), 20);
   EXPECT_GE(result.quantities.at("fragments"), 2);
   EXPECT_LT(result.invariants.at("linear_momentum_drift"), 1e-12);

@@ -256,6 +256,35 @@ TEST(FractureRun, ATougherPlateBreaksLaterAndLess) {
   EXPECT_LT(tough.quantities.at("dead_area"), weak.quantities.at("dead_area"));
 }
 
+// The step follows from forces at no velocity, also where there is no damping.
+TEST(FractureRun, UndampedWithTheStepAskedFor) {
+  const scene::Problem problem = plate({{"end_time", "5 us"}});
+  for (const char* method : {"cbm", "delaunay"}) {
+    scene::RunRequest request;
+    request.h = 1e-3;
+    request.settings = {{"beta", "0"}};
+    scene::Result result;
+    scene::MethodRegistry::instance().find(method).run(problem, request, result);
+    EXPECT_NEAR(result.t_end, 5e-6, 1e-18) << method;
+    EXPECT_GT(result.dt, 0) << method;
+  }
+}
+
+TEST(FractureRun, ACutThroughNothingIsRefused) {
+  const auto run = [](const std::string& from, const std::string& to) {
+    scene::Problem problem = plate();
+    scene::Fracture& fracture = *problem.fracture;
+    fracture.cracks.front().from = Vec3(std::stod(from), 0.01, 0);
+    fracture.cracks.front().to = Vec3(std::stod(to), 0.01, 0);
+    scene::RunRequest request;
+    request.h = 1e-3;
+    scene::Result result;
+    scene::MethodRegistry::instance().find("cbm").run(problem, request, result);
+  };
+  EXPECT_THROW(run("0.010", "0.01000001"), InputError);  // between two bonds
+  EXPECT_THROW(run("0.015", "0.021"), InputError);       // nothing ahead
+}
+
 TEST(FractureRun, OtherMethodsRefuse) {
   const scene::Problem problem = plate();
   for (const scene::Method* method : scene::MethodRegistry::instance().all()) {
