@@ -88,7 +88,7 @@ const std::vector<std::string>& quantity_fields();
 /// tension and also sees what the bond does not stretch.
 enum class FractureCriterion { strain, energy };
 
-/// A cut that is there from the start: bonds that cross it are removed. Plane problems.
+/// A cut that is there from the start: bonds that cross it are removed. In 3D it is drawn along Z.
 struct PreCrack {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();  ///< [m]; cracks grow from `to` on
 };
