@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace concord::scene {
 namespace fs = std::filesystem;
 namespace {
@@ -96,9 +98,15 @@ void Checkpoint::read(const std::string& name, const Block& block) const {
 void Checkpoint::write(const std::string& name, const Block& block) {
   const hsize_t extent = block.size;
   const Hdf5Handle space(H5Screate_simple(1, &extent, nullptr), H5Sclose, "make a data space");
-  const Hdf5Handle set(H5Dcreate2(m_handle, name.c_str(), block.type, space, H5P_DEFAULT,
-                                  H5P_DEFAULT, H5P_DEFAULT),
-                       H5Dclose, "make dataset " + name);
+  const Hdf5Handle checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
+  if (block.size >= 64) {  // a checksum for every chunk, which reading compares; costs 2 kB
+    const hsize_t chunk = std::min<hsize_t>(extent, 65536);
+    hdf5_check(H5Pset_chunk(checked, 1, &chunk), "set the chunk of " + name);
+    hdf5_check(H5Pset_fletcher32(checked), "check " + name);
+  }
+  const Hdf5Handle set(
+      H5Dcreate2(m_handle, name.c_str(), block.type, space, H5P_DEFAULT, checked, H5P_DEFAULT),
+      H5Dclose, "make dataset " + name);
   if (block.size > 0)
     hdf5_check(H5Dwrite(set, block.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, block.values),
                "write " + name);

@@ -59,8 +59,10 @@ void write_hdf5_file(hid_t file, const fs::path& target, bool safely) {
     throw std::runtime_error("HDF5 cannot give the contents of " + target.string());
   const fs::path temporary = target.string() + ".part";
   try {
-    writing(target, [&] { write_bytes(temporary, image.data(), image.size(), safely); });
-    fs::rename(temporary, target);
+    writing(target, [&] {
+      write_bytes(temporary, image.data(), image.size(), safely);
+      fs::rename(temporary, target);
+    });
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);

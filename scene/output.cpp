@@ -34,13 +34,14 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
       stream.exceptions(std::ios::badbit | std::ios::failbit);
       stream.open(temporary, std::ios::binary | std::ios::trunc);
       stream << text << std::flush;
+      stream.close();
+      std::filesystem::rename(temporary, file);
     });
   } catch (...) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
     throw;
   }
-  std::filesystem::rename(temporary, file);
 }
 
 }  // namespace concord::scene

@@ -292,6 +292,9 @@ void ParticleMethod::run_kept(const scene::Problem& problem, const scene::RunReq
   const Constraints constraints(problem, body);
   const ExternalLoads loads(problem, *model);
   const bool dissipative = model->viscous() || damped(problem, settings);
+  check_solver(m_info.name, problem, settings, model->viscous());
+  // Of an earlier run, whose files are written over from here on.
+  if (!keeping.resume && !keeping.file.empty()) std::filesystem::remove(keeping.file);
   Recorder recorder(problem, *model, constraints, executor, request.out, request.write_frames,
                     dissipative, keeping.resume);
   result.h = request.h;
@@ -301,7 +304,6 @@ void ParticleMethod::run_kept(const scene::Problem& problem, const scene::RunReq
   // Set-up is told as it is without a cache.
   result.setup_s = seconds_since(begin) + body.saved_s;
   if (body.saved_s > 0) result.notes["body"] = "from the cache";
-  check_solver(m_info.name, problem, settings, model->viscous());
   Checkpoints checkpoints(keeping,
                           [&] { return facts(m_info.name, problem, request, settings, body); });
   Run run{problem,

@@ -67,11 +67,13 @@ void check(const RunOptions& options) {
                      "seconds, 0 or more");
 }
 
-/// Nobody must take what an earlier run left for ours.
+/// Nobody must take what an earlier run left for ours. What a run that was stopped left (its
+/// summary says so) stays until this one has been set up: bad input must not take it.
 void clear(const fs::path& out, bool resumes) {
   fs::create_directories(out);
-  fs::remove(out / "summary.json");
-  if (!resumes && remove_checkpoint(out))
+  const bool stopped = fs::exists(checkpoint_file(out));
+  if (!stopped) fs::remove(out / "summary.json");
+  if (!resumes && stopped)
     fmt::print(stderr, "concord: the run that was stopped in {} begins anew, not by --resume\n",
                out.string());
 }
@@ -81,7 +83,10 @@ void run_kept(const scene::Method& method, const scene::Problem& problem,
               const scene::RunRequest& request, const RunOptions& options,
               scene::Result& result) {
   const auto* resumable = dynamic_cast<const scene::Resumable*>(&method);
-  if (resumable == nullptr) return method.run(problem, request, result);
+  if (resumable == nullptr) {
+    remove_checkpoint(request.out);
+    return method.run(problem, request, result);
+  }
   const scene::Keeping keeping{checkpoint_file(request.out), options.checkpoint,
                                !options.resume.empty(), request_text(options)};
   resumable->run_kept(problem, request, keeping, result);
