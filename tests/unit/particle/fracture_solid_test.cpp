@@ -5,6 +5,7 @@
 #include "particle/delaunay/delaunay.hpp"
 #include "particle/delaunay/fracture.hpp"
 #include "scene/reader.hpp"
+#include "tests/unit/potential.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,15 +34,7 @@ Body body_of(const scene::Problem& problem, double perturb = 0.2) {
   return make_body(problem, 0.25, perturb, 3);
 }
 
-Column random_column(const Body& body, double size, unsigned seed) {
-  Column c(body.X.size(), 0.0);
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  for (Index a = 0; a < body.n; ++a) {
-    for (int i = 0; i < 3; ++i) c[4 * static_cast<std::size_t>(a) + i] = uniform(generator);
-  }
-  return c;
-}
+using test::along, test::random_column;
 
 /// u_i = H_ij X_j.
 Column affine(const Body& body, const Mat3& H) {
@@ -184,22 +177,9 @@ TEST(FractureSolid, DamagedForcesAreMinusTheGradientOfTheEnergy) {
     FractureModel model(body, problem, with_contact);
     damage(model, body, inner(body));
     ASSERT_GT(model.record().broken.size(), 8u);
-    const Column u = random_column(body, 0.01 * body.h, 2),
-                 w = random_column(body, 0.01 * body.h, 3), still(body.X.size(), 0.0);
-    Column f = still;
-    model.forces(u, still, f, Executor(1));
-    double power = 0, scale = 0;
-    for (std::size_t k = 0; k < u.size(); ++k)
-      power -= f[k] * w[k], scale += std::abs(f[k] * w[k]);
-    const auto energy = [&](double s) {
-      Column moved = u;
-      for (std::size_t k = 0; k < u.size(); ++k) moved[k] += s * w[k];
-      const Energies e = model.energies(moved, Executor(1));
-      return e.internal + e.stabilisation;
-    };
     // Differences of fourth order: 1e-10 at these strains.
-    const double slope =
-        (8 * (energy(0.02) - energy(-0.02)) - (energy(0.04) - energy(-0.04))) / (12 * 0.02);
+    const auto [slope, power, scale] = along(model, random_column(body, 0.01 * body.h, 2),
+                                             random_column(body, 0.01 * body.h, 3), 0.02);
     EXPECT_NEAR(slope, power, 1e-9 * scale) << law;
   }
 }

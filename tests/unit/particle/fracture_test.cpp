@@ -5,6 +5,7 @@
 #include "particle/delaunay/delaunay.hpp"
 #include "particle/delaunay/fracture.hpp"
 #include "scene/reader.hpp"
+#include "tests/unit/potential.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,13 +27,7 @@ Body body_of(const scene::Problem& problem) {
   return make_body(problem, 0.5e-3, 0, 1, CellSource::mesh);
 }
 
-Column random_column(const Body& body, double size, unsigned seed) {
-  Column c(body.X.size());
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  for (double& x : c) x = uniform(generator);
-  return c;
-}
+using test::along, test::random_column;
 
 /// Some triangles in a heap around a particle, so that it is left alone, and single ones.
 std::vector<Index> some_triangles(const Body& body, Index lone) {
@@ -125,20 +120,9 @@ TEST(FractureModel, DamagedForcesAreMinusTheGradientOfTheEnergy) {
   FractureModel model(body, problem, {});
   damage(model, body);
   ASSERT_GT(model.record().broken.size(), 3u);
-  const Column u = random_column(body, 0.01 * body.h, 2),
-               w = random_column(body, 0.01 * body.h, 3), still(body.X.size(), 0.0);
-  Column f = still;
-  model.forces(u, still, f, Executor(1));
-  double power = 0, scale = 0;
-  for (std::size_t k = 0; k < u.size(); ++k)
-    power -= f[k] * w[k], scale += std::abs(f[k] * w[k]);
-  const auto energy = [&](double s) {
-    Column moved = u;
-    for (std::size_t k = 0; k < u.size(); ++k) moved[k] += s * w[k];
-    return model.energies(moved, Executor(1)).internal;
-  };
   // The energy of the law is a polynomial of the fourth degree in u, and this exact for it.
-  const double slope = (8 * (energy(0.1) - energy(-0.1)) - (energy(0.2) - energy(-0.2))) / 1.2;
+  const auto [slope, power, scale] = along(model, random_column(body, 0.01 * body.h, 2),
+                                           random_column(body, 0.01 * body.h, 3), 0.1);
   EXPECT_NEAR(slope, power, 1e-12 * scale);
 }
 

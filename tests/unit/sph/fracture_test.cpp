@@ -3,6 +3,7 @@
 #include "fracture_sample.hpp"
 
 #include "scene/checkpoint.hpp"
+#include "tests/unit/potential.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,21 +74,9 @@ TEST(FracturingSph, DamagedForcesAreMinusTheGradientOfTheEnergy) {
   FracturingSph model(body, problem, breakable(), one_thread);
   damage(model, body, lone);
   ASSERT_GT(model.record().broken.size(), 3u);
-  const Column u = random_column(body, 0.01 * body.h, 2),
-               w = random_column(body, 0.01 * body.h, 3), still(body.X.size(), 0.0);
-  Column f = still;
-  model.forces(u, still, f, one_thread);
-  double power = 0, scale = 0;
-  for (std::size_t k = 0; k < u.size(); ++k)
-    power -= f[k] * w[k], scale += std::abs(f[k] * w[k]);
-  const auto energy = [&](double s) {
-    Column moved = u;
-    for (std::size_t k = 0; k < u.size(); ++k) moved[k] += s * w[k];
-    const particle::Energies e = model.energies(moved, one_thread);
-    return e.internal + e.stabilisation;
-  };
   // A polynomial of the fourth degree in u, for which this is exact.
-  const double slope = (8 * (energy(0.1) - energy(-0.1)) - (energy(0.2) - energy(-0.2))) / 1.2;
+  const auto [slope, power, scale] = particle::test::along(
+      model, random_column(body, 0.01 * body.h, 2), random_column(body, 0.01 * body.h, 3), 0.1);
   EXPECT_NEAR(slope, power, 1e-12 * scale);
 }
 
