@@ -16,8 +16,6 @@ struct Case {
   double psi;
 };
 
-const Executor one_thread(1);
-
 Body body_of(const Case& c) {
   return space_dim(c.dimension) == 3 ? lattice(3, 5, 0.25) : lattice(2, 8, 0.25);
 }

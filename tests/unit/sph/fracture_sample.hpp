@@ -8,8 +8,6 @@
 
 namespace concord::sph {
 
-inline const Executor one_thread(1);
-
 inline scene::Problem plate(const std::vector<scene::Override>& more = {}) {
   std::vector<scene::Override> set{{"parameters.width", "20 mm"},
                                    {"parameters.crack", "10 mm"},

@@ -11,8 +11,6 @@
 namespace concord::sph {
 namespace {
 
-const Executor one_thread(1);
-
 Column forces(TotalLagrangianSph& model, const Column& u, const Column& v,
               const Executor& executor = one_thread) {
   Column f(u.size(), 1e30);

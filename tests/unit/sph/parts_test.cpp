@@ -9,8 +9,6 @@
 namespace concord::sph {
 namespace {
 
-const Executor one_thread(1);
-
 struct Case {
   int dim;
   PenaltyForm penalty;

@@ -12,8 +12,6 @@
 namespace concord::sph {
 namespace {
 
-const Executor one_thread(1);
-
 /// A perturbed lattice whose first and last layers lie on the planes X_i = 0 and X_i = L.
 Body box(int dim, int count) {
   Body body = lattice(dim, count, 0.25);

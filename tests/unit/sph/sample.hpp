@@ -10,6 +10,8 @@
 
 namespace concord::sph {
 
+inline const Executor one_thread(1);
+
 /// Uniform in [-1, 1).
 inline double random(std::uint64_t seed, std::uint64_t i) {
   return 2 * scene::uniform_random(seed, i, 0) - 1;
