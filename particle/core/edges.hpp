@@ -1,6 +1,6 @@
 #pragma once
 // The edges of a body's triangulation, for measures that need nearest neighbours of every
-// method.
+// method, and for bonds and springs that break.
 
 #include "particle/core/body.hpp"
 

@@ -1,5 +1,7 @@
 #include "particle/delaunay/network.hpp"
 
+#include "particle/core/edges.hpp"
+
 #include <algorithm>
 
 namespace concord::particle::delaunay {
@@ -48,16 +50,16 @@ Network::Network(const Body& body, bool contact) : m_body(body), m_dim(body.dim)
 }
 
 void Network::find_bonds() {
-  std::vector<Pair> edges, incident;
-  for (Index t = 0; t < static_cast<Index>(m_body.triangulation.size()); ++t)
-    for_edges(m_dim, vertices(t), [&](Index a, Index b) { edges.emplace_back(a, b); });
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  make_rows(m_body.n, edges, m_rows.begin, m_rows.other);
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    m_ends.push_back({edges[k].first, edges[k].second});
-    incident.emplace_back(edges[k].first, static_cast<Index>(k));
-    incident.emplace_back(edges[k].second, static_cast<Index>(k));
+  const Edges edges = make_edges(m_body);
+  m_rows.begin.assign(edges.begin.begin(), edges.begin.end());
+  m_rows.other = edges.other;
+  std::vector<Pair> incident;
+  for (Index a = 0; a < m_body.n; ++a) {
+    for (Index k = m_rows.begin[a]; k < m_rows.begin[a + 1]; ++k) {
+      m_ends.push_back({a, m_rows.other[k]});
+      incident.emplace_back(a, k);
+      incident.emplace_back(m_rows.other[k], k);
+    }
   }
   make_rows(m_body.n, incident, m_incident_begin, m_incident);
 }

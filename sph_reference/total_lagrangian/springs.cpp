@@ -1,5 +1,7 @@
 #include "sph_reference/total_lagrangian/springs.hpp"
 
+#include "particle/core/edges.hpp"
+
 #include <algorithm>
 
 namespace concord::sph {
@@ -76,18 +78,11 @@ void Springs::find_pairs(const Neighbours& rows) {
 }
 
 void Springs::find_edges() {
-  const particle::Triangulation& t = m_body.triangulation;
-  const int vertices = t.dim + 1;
-  std::vector<std::pair<Index, Index>> edges;
-  for (std::size_t s = 0; s < t.size(); ++s) {
-    const Index* v = &t.simplices[s * vertices];
-    for (int i = 0; i < vertices; ++i) {
-      for (int j = 0; j < i; ++j) edges.emplace_back(std::minmax(v[i], v[j]));
-    }
+  const particle::Edges edges = particle::make_edges(m_body);
+  for (Index a = 0; a < m_body.n; ++a) {
+    for (std::size_t k = edges.begin[a]; k < edges.begin[a + 1]; ++k)
+      m_first.push_back(a), m_second.push_back(edges.other[k]);
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  for (const auto& [a, b] : edges) m_first.push_back(a), m_second.push_back(b);
 }
 
 /// -1: there is none.
