@@ -160,6 +160,7 @@ void Recorder::Account::keep(scene::Checkpoint& state) {
   state.item("account.checkerboard_max", checkerboard_max);
   state.item("account.nonaffine_sum", nonaffine_sum);
   state.item("account.energy_sum", energy_sum);
+  crack_toll.keep(state);
 }
 
 /// What the cracks measure follows from the model's record alone.

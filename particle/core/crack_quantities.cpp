@@ -1,5 +1,6 @@
 #include "particle/core/crack_quantities.hpp"
 
+#include "particle/core/checkpoint.hpp"
 #include "scene/output.hpp"
 
 #include <algorithm>
@@ -11,11 +12,45 @@ namespace {
 /// Side branches count from this length on: three spacings of the branching study's plate, .5
 /// mm at 1/6 mm.
 constexpr double shortest_branch = 3;
-/// The mean speed is taken between these shares of the ligament: without the start, whose
-/// instant is not well defined, and without the end, whose stress waves come back.
+/// The mean speed and the toughness are taken between these shares of the ligament: without the
+/// start, whose instant is not well defined, and without the end, whose stress waves come back.
 constexpr double from_share = 0.1, to_share = 0.9;
 
+/// Of the way from a to b.
+CrackCost between(const CrackCost& a, const CrackCost& b, double share) {
+  return {a.damping + share * (b.damping - a.damping),
+          a.deletion + share * (b.deletion - a.deletion)};
+}
+
 }  // namespace
+
+void CrackToll::add(double share, const CrackCost& cost) {
+  const std::array<double, 2> marks{from_share, to_share};
+  for (std::size_t k = 0; k < marks.size(); ++k) {
+    if (m_passed[k] || share < marks[k]) continue;
+    m_passed[k] = true;
+    m_at[k] = between(m_cost, cost, (marks[k] - m_share) / (share - m_share));
+  }
+  m_share = share;
+  m_cost = cost;
+}
+
+std::optional<CrackCost> CrackToll::paid() const {
+  if (!m_passed[0] || !m_passed[1]) return std::nullopt;
+  return CrackCost{m_at[1].damping - m_at[0].damping, m_at[1].deletion - m_at[0].deletion};
+}
+
+void CrackToll::keep(scene::Checkpoint& state) {
+  state.item("crack_toll.share", m_share);
+  const auto item = [&](const std::string& name, CrackCost& cost) {
+    state.item(name + ".damping", cost.damping);
+    state.item(name + ".deletion", cost.deletion);
+  };
+  item("crack_toll.last", m_cost), item("crack_toll.from", m_at[0]);
+  item("crack_toll.to", m_at[1]);
+  state.item("crack_toll.passed_from", m_passed[0]);
+  state.item("crack_toll.passed_to", m_passed[1]);
+}
 
 double rayleigh_speed(const scene::Material& material, Dimension dimension) {
   const double c_s = material.shear_wave_speed(), nu = material.nu;
@@ -143,6 +178,22 @@ std::map<std::string, double> CrackQuantities::quantities() {
     q["crack_speed_over_rayleigh"] = v / c_R;
   }
   return q;
+}
+
+double CrackQuantities::advance_share() {
+  follow();
+  return m_tip ? m_tip->advance() / m_ligament : 0.0;
+}
+
+std::map<std::string, double> CrackQuantities::toughness(const CrackCost& cost) const {
+  const double thickness =
+      m_problem.dimension == Dimension::three_d ? m_body.thickness : m_problem.thickness;
+  const double area = (to_share - from_share) * m_ligament * thickness;
+  const double effective = (cost.damping + cost.deletion) / area;
+  return {{"effective_toughness", effective},
+          {"effective_toughness_deletion", cost.deletion / area},
+          {"effective_over_nominal_toughness",
+           effective / m_problem.fracture->energy_release_rate}};
 }
 
 void CrackQuantities::write(const std::filesystem::path& file) const {

@@ -6,12 +6,40 @@
 #include "particle/core/crack.hpp"
 #include "particle/core/force_model.hpp"
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
+namespace concord::scene {
+class Checkpoint;
+}
+
 namespace concord::particle {
+
+/// What a crack's way has cost since the start [J].
+struct CrackCost {
+  double damping = 0, deletion = 0;  ///< taken by viscosity, and by the deletion of bonds
+};
+
+/// Follows the cost from row to row of the history, and tells what the tip's way from 10 to 90
+/// % of the ligament has cost; between rows the cost is linear in the advance.
+class CrackToll {
+ public:
+  /// At a row: the tip's advance over the ligament, and the cost since the start.
+  void add(double share, const CrackCost& cost);
+  /// Nothing before the tip has passed both.
+  std::optional<CrackCost> paid() const;
+  /// Saved or restored (checkpoint.hpp).
+  void keep(scene::Checkpoint& state);
+
+ private:
+  double m_share = 0;
+  CrackCost m_cost;               ///< at the row before
+  std::array<CrackCost, 2> m_at;  ///< where the tip passed them
+  std::array<bool, 2> m_passed{};
+};
 
 /// Speed of Rayleigh waves [m/s]: the root of (2 - s)^2 = 4 sqrt(1 - s) sqrt(1 - s
 /// c_s^2/c_p^2), s = (c_R/c_s)^2 < 1, with the longitudinal speed of the plate, c_p^2 = E/(rho
@@ -32,6 +60,13 @@ class CrackQuantities {
   void append(std::vector<double>& values);
   /// Everything for summary.json; what is not there (no arrival yet, no branch) is left out.
   std::map<std::string, double> quantities();
+  /// How far the tip is ahead of the pre-crack's, over the ligament; 0 without a pre-crack.
+  double advance_share();
+  /// Effective toughness [J/m^2], (dD_vis + dD_del) / (da t): what damping and deletion take
+  /// while the tip goes from 10 to 90 % of the ligament, over that way along the pre-crack
+  /// times the thickness; the part of deletion; and over G_f. Branches count into what is
+  /// taken, not into the way. Damping counts wherever in the body it acts.
+  std::map<std::string, double> toughness(const CrackCost& cost) const;
   /// Dead triangles with their times and corners; in 3D the faces of dead tetrahedra.
   void write(const std::filesystem::path& file) const;
 

@@ -68,6 +68,10 @@ class Leapfrog {
   /// `outcome` is current whenever it throws.
   void run(const LeapfrogOptions& options, Recorder& recorder, LeapfrogOutcome& outcome);
 
+  const Column& displacement() const { return m_u; }
+  /// Before run(): starts from this displacement instead of the problem's.
+  void start_from(const Column& u) { m_u = u; }
+
   /// The state at the last force evaluation, velocity brought to the same instant.
   State state();
 

@@ -40,6 +40,7 @@ struct Run {
   Recorder& recorder;
   scene::Result& result;
   Checkpoints* checkpoints;  ///< nullptr: none
+  bool resumes;
 
   void finish(const State& state) {
     result.t_end = state.t;
@@ -92,6 +93,7 @@ struct Run {
       relaxation(options);
     options.checkpoints = checkpoints;
     Leapfrog integrator(problem, model, constraints, loads, executor, options.ramp_time);
+    if (settings.word("start") == "equilibrium" && !resumes) settle(integrator);
     LeapfrogOutcome outcome;
     const auto tell = [&] {
       result.steps = outcome.steps;
@@ -117,6 +119,17 @@ struct Run {
           "equilibrium", outcome.steps, outcome.t, -1,
           "the damped motion did not settle to the asked residual; more time: settle_time");
     }
+  }
+
+  /// Starts from the equilibrium near the problem's initial displacement.
+  void settle(Leapfrog& integrator) const {
+    const auto begin = Clock::now();
+    Statics solver(problem, model, constraints, loads, executor,
+                   Statics::RigidMotions::allowed);
+    StaticsOptions options;
+    options.tolerance = settings.number("tolerance");
+    integrator.start_from(solver.settle(integrator.displacement(), options));
+    result.setup_s += seconds_since(begin);
   }
 
   void tell_resumed(const LeapfrogOutcome& outcome) const {
@@ -155,6 +168,15 @@ const std::vector<scene::ParameterInfo>& solver_parameters() {
        -1e300,
        1e300,
        {"auto", "explicit", "static"}},
+      {"start",
+       "1",
+       "given",
+       "given | equilibrium",
+       "dynamic scenes: the initial displacement as it is given, or the equilibrium at t = 0 "
+       "that Newton's method finds from there, pre-cracks open and nothing breaking",
+       -1e300,
+       1e300,
+       {"given", "equilibrium"}},
       {"dt_factor", "1", "0.8", "(0, 1]",
        "time step over the critical one 2/omega_max, omega_max by Lanczos iteration on the "
        "linearised forces",
@@ -210,6 +232,8 @@ void check_solver(const std::string& method, const scene::Problem& problem,
   };
   if (solver == "static" && !problem.is_static)
     reject(".solver", "static", "auto or explicit for a scene with an end_time");
+  if (settings.word("start") != "given" && problem.is_static)
+    reject(".start", settings.word("start"), "given for a static scene");
   if (settings.number("dt") > 0 && settings.number("courant") > 0)
     reject(".courant", "above 0 beside a time step dt", "one of the two");
   if (settings.number("duration") > 0 && !(problem.is_static && solver == "explicit")) {
@@ -316,7 +340,8 @@ void ParticleMethod::run_kept(const scene::Problem& problem, const scene::RunReq
           executor,
           recorder,
           result,
-          keeping.file.empty() ? nullptr : &checkpoints};
+          keeping.file.empty() ? nullptr : &checkpoints,
+          keeping.resume};
   const auto complete = [&] {
     model.reset();
     if (!result.samples.u.empty()) result.field = field_of(body, result.samples);

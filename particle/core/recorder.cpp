@@ -128,6 +128,7 @@ void Recorder::add_row(const State& state) {
   const std::span<const Mat3> H = gradients(state);
   follow(b, state.impulse);
   if (m_hourglass) follow(b, m_hourglass->measure(state.u, H));
+  if (m_crack) m_account.crack_toll.add(m_crack->advance_share(), {b.dissipation, b.released});
   if (!m_history.active()) return;
   m_values.assign(1, state.t);
   m_quantities.append(state, H, m_values);
@@ -226,6 +227,9 @@ void Recorder::add_cracks(scene::Result& result) {
     result.quantities["energy_residual"] = m_account.energy_change / m_account.largest_work;
   const double lost = m_account.last.dissipation + m_account.last.released;
   if (lost > 0) result.quantities["dissipated_share"] = lost / (lost + m_account.last.stored());
+  if (const std::optional<CrackCost> cost = m_account.crack_toll.paid()) {
+    for (const auto& [name, value] : m_crack->toughness(*cost)) result.quantities[name] = value;
+  }
   if (m_folder.empty()) return;
   const std::filesystem::path file = m_folder / "crack.csv";
   scene::writing(file, [&] { m_crack->write(file); });

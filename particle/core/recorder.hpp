@@ -56,7 +56,8 @@ class Recorder {
   void add_hourglass(scene::Result& result) const;
   /// Where bonds can break: adds what the cracks measure (CrackQuantities), energy_residual,
   /// the largest |energy_balance_J| over the largest |external work|, and dissipated_share of
-  /// the last row, dissipation + released over that + stored; writes crack.csv.
+  /// the last row, dissipation + released over that + stored, and the effective toughness;
+  /// writes crack.csv.
   void add_cracks(scene::Result& result);
 
   /// Samples (particles with volumes) of a state.
@@ -96,6 +97,7 @@ class Recorder {
            angular_change = 0, linear_scale = 0, angular_scale = 0;
     double share = 0, share_max = 0, checkerboard = 0, checkerboard_max = 0;
     double nonaffine_sum = 0, energy_sum = 0;  ///< over the rows [J]
+    CrackToll crack_toll;
     void keep(scene::Checkpoint& state);
   };
   Account m_account;

@@ -57,6 +57,7 @@ struct Statics::Factors {
   std::vector<int> source;
   Eigen::Index entries = -1;
   bool cholesky_analysed = false, lu_analysed = false;
+  double raise = 0;  ///< of the diagonal, over its mean
 
   /// An indefinite tangent is no news: the LU factorisation takes it.
   Factors() { cholesky.cholmod().print = 0; }
@@ -65,6 +66,9 @@ struct Statics::Factors {
     if (K.nonZeros() != entries) build_pattern(K, equation, free);
     for (std::size_t k = 0; k < source.size(); ++k)
       free_free.valuePtr()[k] = K.valuePtr()[source[k]];
+    if (raise == 0) return;
+    const double added = raise * free_free.diagonal().sum() / std::max<Index>(free, 1);
+    for (Index c = 0; c < free; ++c) free_free.coeffRef(c, c) += added;
   }
 
  private:
@@ -95,12 +99,14 @@ struct Statics::Factors {
 
 Statics::Statics(const scene::Problem& problem, ForceModel& model,
                  const Constraints& constraints, const ExternalLoads& loads,
-                 const Executor& executor)
+                 const Executor& executor, RigidMotions allowed)
     : m_problem(problem), m_model(model), m_constraints(constraints), m_loads(loads),
       m_executor(executor), m_work(model.body(), constraints, loads),
       m_factors(std::make_unique<Factors>()) {
   const Body& body = model.body();
-  if (const int rigid = free_rigid_motions(body, constraints); rigid > 0) {
+  const int rigid =
+      allowed == RigidMotions::allowed ? 0 : free_rigid_motions(body, constraints);
+  if (rigid > 0) {
     throw InputError(
         {problem.file.string(), 0, 0}, "boundary",
         fmt::format("displacement conditions that leave {} rigid motion{} of the body free",
@@ -233,6 +239,21 @@ bool Statics::step_to(double t, const StaticsOptions& options, StaticsOutcome& o
   m_failure = fmt::format("residual {:.3g} of {:.3g} after {} iterations", residual, m_scale,
                           options.most_iterations);
   return before <= 100 * options.tolerance * m_scale;
+}
+
+const Column& Statics::settle(std::span<const double> guess, const StaticsOptions& options) {
+  std::copy(guess.begin(), guess.end(), m_u.begin());
+  m_factors->raise = 1e-9;
+  StaticsOutcome outcome;
+  bool reached = false;
+  try {
+    reached = step_to(0, options, outcome);
+  } catch (const BadState& bad) {
+    m_failure = bad.quantity;
+  }
+  if (reached) return m_u;
+  throw SolveError("equilibrium", outcome.iterations, 0, -1,
+                   "Newton's method finds no equilibrium to start from: " + m_failure);
 }
 
 State Statics::state() const {

@@ -33,14 +33,22 @@ struct StaticsOutcome {
 /// fails is halved.
 class Statics {
  public:
-  /// Throws InputError when the constraints leave a rigid motion free.
+  /// Rigid motions that the constraints leave free: an InputError, or allowed where the state
+  /// that is looked for need not be the only one, see settle().
+  enum class RigidMotions { refused, allowed };
+  /// Throws InputError.
   Statics(const scene::Problem& problem, ForceModel& model, const Constraints& constraints,
-          const ExternalLoads& loads, const Executor& executor);
+          const ExternalLoads& loads, const Executor& executor,
+          RigidMotions rigid = RigidMotions::refused);
   ~Statics();
 
   /// Throws SolveError when a step does not converge though halved, or the tangent is singular;
   /// the recorder then has all load steps reached. `outcome` is current whenever it throws.
   void run(const StaticsOptions& options, Recorder& recorder, StaticsOutcome& outcome);
+  /// The equilibrium at t = 0 that Newton's method reaches from a displacement; nothing breaks.
+  /// Free rigid motions, and particles without bonds, stay where they are up to round-off: the
+  /// tangent's diagonal is raised by 1e-9 of its mean. Throws SolveError.
+  const Column& settle(std::span<const double> guess, const StaticsOptions& options);
   State state() const;
 
  private:

@@ -250,4 +250,33 @@ TEST(Crack, ASlabOfTetrahedraIsMeasuredFromAbove) {
   EXPECT_EQ(fragments(slab, solid).isolated, 2 * fragments(plane, flat).isolated);
 }
 
+// Rows at a twentieth of the ligament each; a cost that is linear in the advance comes out
+// exactly wherever the marks lie between the rows, and what came before and after does not
+// count.
+TEST(CrackToll, IsPaidBetweenTenAndNinetyPercent) {
+  CrackToll toll;
+  toll.add(0, {7, 3});  // before the crack has moved
+  toll.add(0, {11, 5});
+  for (int k = 1; k <= 16; ++k) {
+    const double share = 0.053 * k;
+    toll.add(share, {11 + 20 * share, 5 + 10 * share});
+    EXPECT_FALSE(toll.paid().has_value());
+  }
+  toll.add(0.954, {11 + 20 * 0.954, 5 + 10 * 0.954});
+  toll.add(1, {1000, 1000});
+  ASSERT_TRUE(toll.paid().has_value());
+  EXPECT_NEAR(toll.paid()->damping, 16, 1e-12);
+  EXPECT_NEAR(toll.paid()->deletion, 8, 1e-12);
+}
+
+// From before the first mark to behind the second within one row.
+TEST(CrackToll, AJumpCostsItsShare) {
+  CrackToll toll;
+  toll.add(0, {1, 2});
+  toll.add(1, {11, 22});
+  ASSERT_TRUE(toll.paid().has_value());
+  EXPECT_NEAR(toll.paid()->damping, 8, 1e-12);
+  EXPECT_NEAR(toll.paid()->deletion, 16, 1e-12);
+}
+
 }  // namespace concord::particle
