@@ -89,6 +89,16 @@ double facet_area(const Mesh& mesh, const Index* facet) {
 
 }  // namespace
 
+int corner_count(CellShape shape, int dim) {
+  return shape == CellShape::simplex ? dim + 1 : 1 << dim;
+}
+
+Vec3 hypercube_corner(int corner, int dim) {
+  const int ring = corner % 4;
+  return {ring == 1 || ring == 2 ? 1.0 : -1.0, ring >= 2 ? 1.0 : -1.0,
+          dim == 2 ? 0.0 : (corner >= 4 ? 1.0 : -1.0)};
+}
+
 double mesh_volume(const Mesh& mesh) {
   long double volume = 0;  // sums of 1e6 cells to the last digits
   for (const double w : cell_rule(mesh).weights) volume += w;

@@ -1,13 +1,12 @@
 // Irregular arrangements: nodes moved at random within what their entity allows.
 
 #include "scene/geometry.hpp"
-#include "scene/gmsh_session.hpp"
+#include "scene/mesher.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <gmsh.h>
 
 namespace concord::scene {
 namespace {
@@ -66,25 +65,12 @@ std::vector<std::vector<Vec3>> closure_points(const Mesh& mesh) {
 }
 
 void put_back_on_curved(Mesh& mesh, const Problem& problem) {
-  const auto curved = [&](std::size_t a) {
+  std::vector<Index> curved;
+  for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
     const Entity& e = mesh.entities[static_cast<std::size_t>(mesh.node_entity[a])];
-    return e.dim > 0 && e.dim < mesh.dim && !e.flat;
-  };
-  bool any = false;
-  for (std::size_t a = 0; a < mesh.nodes.size() && !any; ++a) any = curved(a);
-  if (!any) return;
-  GmshSession session;
-  session.open_geometry(problem, mesh.h, problem.layout == Layout::lattice);
-  gmsh_guard(session, problem, "cannot project on", [&] {
-    for (std::size_t a = 0; a < mesh.nodes.size(); ++a) {
-      if (!curved(a)) continue;
-      const Entity& e = mesh.entities[static_cast<std::size_t>(mesh.node_entity[a])];
-      const Vec3& X = mesh.nodes[a];
-      std::vector<double> closest, parameters;
-      gmsh::model::getClosestPoint(e.dim, e.tag, {X[0], X[1], X[2]}, closest, parameters);
-      mesh.nodes[a] = Vec3(closest[0], closest[1], closest[2]);
-    }
-  });
+    if (e.dim > 0 && e.dim < mesh.dim && !e.flat) curved.push_back(static_cast<Index>(a));
+  }
+  if (!curved.empty()) mesher().put_on_entities(mesh, problem, curved);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "particle/core/body_cache.hpp"
 
 #include "scene/interrupt.hpp"
-#include "scene/mesher_version.hpp"
+#include "scene/mesher.hpp"
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -58,13 +58,15 @@ fs::path scene_library() {
   return info.dli_fname;
 }
 
-/// Hash of the program and the scene library, read once; none if they cannot be.
+/// Hash of the program, the scene library and its mesher, read once; none if they cannot be.
 const std::optional<std::string>& maker() {
   static const std::optional<std::string> digits = []() -> std::optional<std::string> {
-    const auto library = contents(scene_library()), program = contents("/proc/self/exe");
-    if (!library || !program) return {};
+    const auto library = contents(scene_library()), mesher = contents(scene::mesher_file()),
+               program = contents("/proc/self/exe");
+    if (!library || !mesher || !program) return {};
     Fnv hash;
     hash.add(*library);
+    hash.add(*mesher);
     hash.add(*program);
     return hash.digits();
   }();

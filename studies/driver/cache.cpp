@@ -1,6 +1,7 @@
 #include "studies/driver/cache.hpp"
 
 #include "scene/interrupt.hpp"
+#include "scene/mesher.hpp"
 #include "scene/output.hpp"
 #include "studies/driver/code_hash.hpp"
 
@@ -72,7 +73,7 @@ std::string hash_code(const std::string& method, bool probe) {
   // Probes of any method may run finite elements to compare with.
   const bool fem = (method == "fem" || probe) && fs::exists(module);
   ContentHash hash;
-  hash.add_file(library);
+  hash.add_file(library).add_file(scene::mesher_file());
   if (fem) hash.add_file(module);
   if (LinkedCode::hash().empty())
     hash.add_file("/proc/self/exe");

@@ -71,16 +71,6 @@ std::vector<int> reflection(int gmsh_type) {
 
 }  // namespace
 
-int corner_count(CellShape shape, int dim) {
-  return shape == CellShape::simplex ? dim + 1 : 1 << dim;
-}
-
-Vec3 hypercube_corner(int corner, int dim) {
-  const int ring = corner % 4;
-  return {ring == 1 || ring == 2 ? 1.0 : -1.0, ring >= 2 ? 1.0 : -1.0,
-          dim == 2 ? 0.0 : (corner >= 4 ? 1.0 : -1.0)};
-}
-
 void orient_cells(Mesh& mesh, const Problem& problem) {
   const std::vector<Corner> corners = corners_of(mesh);
   const int type = gmsh_element(mesh.shape, mesh.dim, mesh.order);

@@ -1,4 +1,4 @@
-#include "scene/gmsh_session.hpp"
+#include "scene/mesher/gmsh_session.hpp"
 
 #include "scene/suggest.hpp"
 

@@ -1,12 +1,11 @@
 // From the .geo to cells, facets, entities and groups.
 
-#include "scene/geometry.hpp"
-#include "scene/gmsh_session.hpp"
+#include "scene/mesher/entry.hpp"
+#include "scene/mesher/gmsh_session.hpp"
 #include "scene/mesh_parts.hpp"
 #include "scene/suggest.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <gmsh.h>
 
@@ -154,11 +153,7 @@ void collect_groups(Mesh& mesh) {
 
 }  // namespace
 
-Mesh make_mesh(const Problem& problem, const MeshRequest& request) {
-  if (!(request.h > 0 && std::isfinite(request.h)))
-    throw InputError({"request", 0, 0}, "resolution",
-                     fmt::format("a spacing of {} m", request.h),
-                     "a positive number: the spacing is reference_length/resolution");
+Mesh mesh_by_gmsh(const Problem& problem, const MeshRequest& request) {
   Mesh mesh;
   mesh.dim = problem.dim();
   mesh.shape = request.shape;
