@@ -22,6 +22,8 @@ MAY_INCLUDE = {
 }
 # Libraries that stay in one room.
 OWNER = {"deal.II/": "fem_reference", "CGAL/": "particle", "gmsh.h": "scene", "muParser": "scene", "toml++/": "scene"}
+# Libraries that are loaded when they are needed: linked, the loader spends a quarter of a second on each at every start.
+NOT_AT_START = ("libgmsh", "libdeal")
 # Formulations do not include each other, but for this pair.
 FORMULATION_EXCEPTIONS = {("cbm", "delaunay")}
 MAX_LINES = 400
@@ -113,6 +115,13 @@ def readme_breaches(top):
             yield f"{folder.relative_to(top)}: no README.md that says something"
 
 
+def start_breaches(libraries):
+    """libraries: what ldd prints of the program."""
+    for library in NOT_AT_START:
+        if library in libraries:
+            yield f"the program links {library}, which a module of its own has to load"
+
+
 def main():
     top, program = Path(sys.argv[1]), sys.argv[2]
     breaches = []
@@ -123,6 +132,7 @@ def main():
     environment = dict(os.environ, CONCORD_HOME=str(top))
     listed = json.loads(subprocess.run([program, "list", "--json"], check=True, capture_output=True, env=environment).stdout)
     breaches += registry_breaches(top, listed)
+    breaches += start_breaches(subprocess.run(["ldd", program], check=True, capture_output=True, text=True).stdout)
     print("\n".join(breaches) or "the house is in order")
     return 1 if breaches else 0
 

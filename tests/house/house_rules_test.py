@@ -44,5 +44,12 @@ class Size(unittest.TestCase):
         self.assertEqual(len(list(rules.size_breaches("a.cpp", "\n" * 401))), 1)
 
 
+class Start(unittest.TestCase):
+    def test_heavy_libraries(self):
+        light = "\tlibconcord_scene.so.0 => /a/libconcord_scene.so.0 (0x1)\n\tlibc.so.6 => /b/libc.so.6 (0x2)\n"
+        self.assertEqual(list(rules.start_breaches(light)), [])
+        self.assertEqual(len(list(rules.start_breaches(light + "\tlibgmsh.so.4.8 => /b/libgmsh.so.4.8 (0x3)\n"))), 1)
+
+
 if __name__ == "__main__":
     unittest.main()
