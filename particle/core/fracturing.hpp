@@ -27,6 +27,13 @@ struct FractureRecord {
   std::vector<BrokenBond> broken;
   std::vector<DeadSimplex> dead;
   double released = 0;  ///< energy that deletion took, with its effect on the step's kick [J]
+  long flat = 0;        ///< of the dead: those that no bond took with it, too flat to be held
+};
+
+/// A bound of frequencies, and the particle it comes from.
+struct FrequencyBound {
+  double omega = 0;  ///< [rad/s]
+  Index particle = -1;
 };
 
 /// A force model that can break is one of these too (ForceModel::fracturing).
@@ -39,6 +46,13 @@ class Fracturing {
   virtual void advance(double t, double dt, std::span<const double> u,
                        std::span<const double> v, std::span<double> f,
                        const Executor& executor) = 0;
+
+  /// Takes back all that the last advance() removed, of a step that is undone.
+  virtual void take_back() {}
+
+  /// Above the frequencies about u of all modes that could rise by what has been removed since
+  /// it was asked last; omega 0: of a model that does not tell.
+  virtual FrequencyBound stiffened([[maybe_unused]] std::span<const double> u) { return {}; }
 
   /// The viscous part of the forces that the last advance() gave [N]; empty without viscosity.
   virtual std::span<const double> viscous_forces() const = 0;

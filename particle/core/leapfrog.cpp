@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace concord::particle {
 namespace {
 
@@ -98,7 +100,9 @@ void Leapfrog::evaluate() {
 /// Forces at the end of a step dt (0: at the start), after which bonds may break.
 void Leapfrog::advance_forces(double dt) {
   if (!features::fracture || m_fracturing == nullptr) return evaluate();
+  const std::size_t dead = m_fracturing->record().dead.size();
   m_fracturing->advance(m_t, dt, m_u, m_v, m_f, m_executor);
+  if (dt > 0 && m_fracturing->record().dead.size() > dead) follow_breaks();
   if (!m_loads.none()) m_loads.add(load_time(), m_f);
 }
 
@@ -242,6 +246,7 @@ void Leapfrog::start() {
 void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
                    LeapfrogOutcome& outcome) {
   m_damping = options.damping;
+  m_dt_factor = options.dt_fixed > 0 ? 0 : options.dt_factor;
   m_dissipation.start(m_damping);
   const bool resumes = options.checkpoints != nullptr && options.checkpoints->resumes();
   if (resumes) {
@@ -249,6 +254,12 @@ void Leapfrog::run(const LeapfrogOptions& options, Recorder& recorder,
         [&](scene::Checkpoint& state) { keep(state, recorder, outcome); });
   }
   const auto failure = [&](const BadState& bad, long step) {
+    if (bad.quantity == "time step") {
+      return SolveError(bad.quantity, step, m_t, bad.particle,
+                        fmt::format("{:.4g} s, above the critical one of what is left since "
+                                    "bonds broke, {:.4g} s",
+                                    m_dt, m_critical));
+    }
     return SolveError(bad.quantity, step, m_t, bad.particle,
                       bad.quantity == "det F" ? "det F <= 0 or not a number" : "not finite");
   };

@@ -23,7 +23,9 @@ struct LeapfrogOptions {
   /// omega_max is asked for again when the largest |H| of any particle changed by this much
   /// since the last estimate. |H|: the largest stretch of an edge of the triangulation, or the
   /// norm of the model's own gradients where particles lie inside the body: simplices do not
-  /// reach its faces then, and one layer has none. And when something has broken since.
+  /// reach its faces then, and one layer has none. And when something has broken since; until
+  /// then the step is at once cut to what Fracturing::stiffened() allows. A fixed step that is
+  /// above the critical one of what a break has left ends the run.
   double reestimate_at = 0.05;
   /// Regions still exactly at rest are left out, by models that can (RestRegions); the same
   /// bits.
@@ -101,6 +103,8 @@ class Leapfrog {
   void kick(double dt, double damping);
   void drift(double dt);
   double critical_step(double dt_factor);
+  double step_for(double omega, double dt_factor) const;
+  void follow_breaks();
   double largest_gradient();
   long dead() const;
   bool settled(double fraction);
@@ -129,6 +133,8 @@ class Leapfrog {
   double m_dt = 0;                              ///< longest step now [s]; 0: not asked for yet
   double m_gradient = 0;                        ///< largest, when it was asked for
   long m_dead = 0;                              ///< simplices gone, when it was asked for
+  double m_dt_factor = 0;                       ///< 0: the step is fixed
+  double m_critical = 0;                        ///< critical step that a fixed one exceeds [s]
 };
 
 }  // namespace concord::particle

@@ -9,9 +9,29 @@ namespace concord::particle {
 double Leapfrog::critical_step(double dt_factor) {
   SpectralRadius spectrum(m_model, m_constraints, m_executor);
   const double omega = spectrum.omega_max(m_u);
-  if (!(omega > 0)) return m_problem.end_time;
+  return omega > 0 ? step_for(omega, dt_factor) : m_problem.end_time;
+}
+
+/// A share of the critical step at a frequency.
+double Leapfrog::step_for(double omega, double dt_factor) const {
   const double zeta = m_model.viscous_damping_ratio(omega);
   return dt_factor * 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);
+}
+
+/// Bonds broke in this step. A bound of the frequencies that may have risen is enough for a
+/// step that can be cut; a fixed one gets the true frequency before it is given up. Throws
+/// BadState.
+void Leapfrog::follow_breaks() {
+  const FrequencyBound bound = m_fracturing->stiffened(m_u);
+  if (!(bound.omega > 0)) return;
+  const double step = step_for(bound.omega, m_dt_factor > 0 ? m_dt_factor : 1);
+  if (m_dt <= step) return;
+  if (m_dt_factor > 0) {
+    m_dt = step;
+    return;
+  }
+  m_critical = critical_step(1);
+  if (m_dt > m_critical) throw BadState{"time step", bound.particle};
 }
 
 double Leapfrog::largest_gradient() {
@@ -95,6 +115,7 @@ bool Leapfrog::settled(double fraction) {
 /// told. False where that gives no good state either.
 bool Leapfrog::step_back() {
   const double dt = m_dt_last;
+  if (m_fracturing != nullptr) m_fracturing->take_back();
   for (std::size_t k = 0; k < m_u.size(); ++k) m_u[k] -= dt * m_v[k];
   m_t -= dt;
   if (m_constraints.moving()) {  // the step's prescribed values may not be numbers

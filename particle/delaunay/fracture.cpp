@@ -11,6 +11,10 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
 
+/// Half of 1/sqrt(6), the least height of the tetrahedra of a divided cube (five or six) over
+/// their longest edge: what is left of a lattice is never too flat where it is not deformed.
+constexpr double largest_flatness = 0.2;
+
 ContactFactors contact_factors(const FractureParameters& p, const scene::Material& material) {
   return {p.xi_n * material.E, p.xi_t * material.mu};
 }
@@ -36,14 +40,22 @@ FractureModel::FractureModel(const Body& body, const scene::Problem& problem,
   m_sweep = FractureSweep::make(m_body, m_network, m_law);
 }
 
-/// eps_crit = sqrt(2 G_f/(E l_c)) (CBM.32), as |x|^2 >= ((1 + eps_crit) |X|)^2; or G_f/l_c.
+/// eps_crit = sqrt(2 G_f/(E l_c)) (CBM.32).
 void FractureModel::set_limits(const scene::Problem& problem) {
-  const double density = problem.fracture->energy_release_rate / m_l;
-  const double stretch = 1 + std::sqrt(2 * density / problem.material.E);
-  for (Index k = 0; k < static_cast<Index>(m_network.bonds()); ++k) {
-    const Vec3 X = m_body.position(m_network.ends(k).b) - m_body.position(m_network.ends(k).a);
-    m_law.limit.push_back(m_law.by_energy ? density : stretch * stretch * X.squaredNorm());
-  }
+  m_density = problem.fracture->energy_release_rate / m_l;
+  m_critical = std::sqrt(2 * m_density / problem.material.E);
+  m_flatness = std::min(std::sqrt(2 * m_critical), largest_flatness);
+  for (Index k = 0; k < static_cast<Index>(m_network.bonds()); ++k)
+    m_law.limit.push_back(limit_of(k));
+}
+
+/// |x|^2 >= ((1 + eps_crit) |X|)^2; or G_f/l_c.
+double FractureModel::limit_of(Index bond) const {
+  const auto [a, b] = m_network.ends(bond);
+  const double stretch = 1 + m_critical;
+  return m_law.by_energy
+             ? m_density
+             : stretch * stretch * (m_body.position(b) - m_body.position(a)).squaredNorm();
 }
 
 /// Throws InputError for a cut through nothing, unless it tells where a slit of the mesh ends.
@@ -57,16 +69,13 @@ void FractureModel::cut(const scene::Fracture& fracture) {
     return false;
   };
   for (const scene::PreCrack& crack : fracture.cracks) {
-    const std::vector<Index> bonds = m_network.crossing(crack.from, crack.to),
-                             simplices = m_network.simplices_of(bonds);
+    const std::vector<Index> bonds = m_network.crossing(crack.from, crack.to);
     if (bonds.empty() && !ends_a_slit(crack.to)) {
       throw InputError(fracture.where, "fracture.crack", "a pre-crack that crosses no bond",
                        "a segment through the body, longer than its spacing; or one that ends "
                        "where a slit of the geometry does");
     }
-    for (const Index t : simplices) m_record.dead.push_back({before_start, t});
-    unlimit(bonds);
-    unlimit(m_network.remove(simplices));
+    remove(bonds, going(bonds, {}, m_still), before_start);
   }
 }
 
@@ -84,16 +93,6 @@ void FractureModel::sweep(ParticleRange part, std::span<const double> u,
 void FractureModel::forces(std::span<const double> u, std::span<const double> v,
                            std::span<double> f, const Executor&) {
   sweep({0, m_body.n}, u, v.empty() ? m_still : v, f, m_viscous, nullptr);
-}
-
-/// Where bonds fail, the forces near them are computed once more.
-void FractureModel::advance(double t, double dt, std::span<const double> u,
-                            std::span<const double> v, std::span<double> f, const Executor&) {
-  m_failed.clear();
-  sweep({0, m_body.n}, u, v, f, m_kept_viscous, &m_failed);
-  if (m_failed.empty()) return;
-  for (const ParticleRange& part : influenced(break_bonds(m_failed, {t, dt, u, v})))
-    sweep(part, u, v, f, m_kept_viscous, nullptr);
 }
 
 /// Ranges of all whose forces change with the particles' gradients or bonds.
@@ -130,64 +129,12 @@ Vec3 FractureModel::along(Index bond, std::span<const double> column) const {
 }
 
 /// Law of a bond's contact, at x_ab and u_loc = u_ab - (H_a + H_b) X_ab / 2.
-ContactLaw FractureModel::contact(Index bond, std::span<const double> u, const Mat3& H_a,
+ContactLaw FractureModel::contact(Index bond, const Vec3& u_ab, const Mat3& H_a,
                                   const Mat3& H_b) const {
   const auto [a, b] = m_network.ends(bond);
-  const Vec3 X = m_body.position(b) - m_body.position(a), u_ab = along(bond, u);
+  const Vec3 X = m_body.position(b) - m_body.position(a);
   return contact_law(m_law.contact, m_network.rows().area_over_length[bond], X + u_ab,
                      u_ab - 0.5 * (H_a + H_b) * X);
-}
-
-/// Omega_i W(F_i) - Omega_i P_i : dF_i / 2 with dF from dx = dt v. What deletion takes from the
-/// sum of these over the particles it touches is the energy released: the second term is the
-/// work that the half kick after the deletion does with the new forces instead of the old ones,
-/// -1/2 sum_j (f_j,new - f_j,old).dx_j.
-double FractureModel::held_by_particle(Index particle, const Step& step) const {
-  const Mat3 H = gradient(particle, step.u), dF = step.dt * gradient(particle, step.v),
-             P = m_constitution.stress(particle, H);
-  return m_network.omega()[particle] *
-         (m_constitution.energy(particle, H).stored - 0.5 * P.cwiseProduct(dF).sum());
-}
-
-/// The same of a bond's contact: U - (p.dx - q.dy)/2.
-double FractureModel::held_by_contact(Index bond, const Step& step) const {
-  if (!m_network.connected(bond)) return 0;
-  const auto [a, b] = m_network.ends(bond);
-  const ContactLaw law = contact(bond, step.u, gradient(a, step.u), gradient(b, step.u));
-  const Vec3 X = m_body.position(b) - m_body.position(a), dx = step.dt * along(bond, step.v),
-             dy = 0.5 * step.dt * (gradient(a, step.v) + gradient(b, step.v)) * X;
-  return law.energy - 0.5 * (law.p.dot(dx) - law.q.dot(dy));
-}
-
-double FractureModel::held_energy(const std::vector<Index>& particles, const Step& step) const {
-  double sum = 0;
-  std::vector<Index> bonds;
-  for (const Index i : particles) {
-    sum += held_by_particle(i, step);
-    const std::span<const Index> own = m_network.bonds_of(i);
-    bonds.insert(bonds.end(), own.begin(), own.end());
-  }
-  if (!m_law.contact.any()) return sum;
-  std::sort(bonds.begin(), bonds.end());
-  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
-  for (const Index k : bonds) sum += held_by_contact(k, step);
-  return sum;
-}
-
-/// Section 3.3 of the paper: the bonds go, and with them their simplices; bond vectors and
-/// averaging volumes of the simplices' particles, which are returned, are rebuilt.
-std::vector<Index> FractureModel::break_bonds(const std::vector<Index>& bonds,
-                                              const Step& step) {
-  const std::vector<Index> simplices = m_network.simplices_of(bonds);
-  std::vector<Index> touched = m_network.vertices_of(simplices);
-  m_record.released += held_energy(touched, step);
-  for (const Index k : bonds)
-    m_record.broken.push_back({step.t, m_network.ends(k).a, m_network.ends(k).b});
-  for (const Index t : simplices) m_record.dead.push_back({step.t, t});
-  unlimit(bonds);
-  unlimit(m_network.remove(simplices));
-  m_record.released -= held_energy(touched, step);
-  return touched;
 }
 
 Energies FractureModel::energies(std::span<const double> u, const Executor&) {
@@ -201,7 +148,8 @@ Energies FractureModel::energies(std::span<const double> u, const Executor&) {
   for (Index k = 0; k < static_cast<Index>(m_network.bonds()); ++k) {
     if (!m_network.connected(k)) continue;
     e.stabilisation +=
-        contact(k, u, gradients[m_network.ends(k).a], gradients[m_network.ends(k).b]).energy;
+        contact(k, along(k, u), gradients[m_network.ends(k).a], gradients[m_network.ends(k).b])
+            .energy;
   }
   return e;
 }
@@ -237,7 +185,7 @@ const ForceModel::Stiffness& FractureModel::tangent(std::span<const double> u) {
   for (Index k = 0; m_law.contact.any() && k < static_cast<Index>(m_network.bonds()); ++k) {
     if (!m_network.connected(k)) continue;
     const auto [a, b] = m_network.ends(k);
-    const ContactLaw law = contact(k, u, H[a], H[b]);
+    const ContactLaw law = contact(k, along(k, u), H[a], H[b]);
     pairs.push_back(
         {a, b, m_body.position(b) - m_body.position(a), law.p_x, law.p_y, law.q_x, law.q_y});
   }
@@ -252,7 +200,8 @@ void FractureModel::intact_share(std::span<double> share) const {
 /// The simplices that are gone say what is left, to the bit; pre-cracks are cut already.
 void FractureModel::keep(scene::Checkpoint& state) {
   ForceModel::keep(state);
-  particle::keep(m_record, state);
+  particle::keep(m_record, state, m_body);
+  state.item("fracture.flat", m_record.flat);
   state.fixed("fracture.viscous", m_kept_viscous);
   if (!state.restores()) return;
   std::vector<Index> gone;
@@ -260,6 +209,9 @@ void FractureModel::keep(scene::Checkpoint& state) {
     if (m_network.alive(dead.simplex)) gone.push_back(dead.simplex);
   }
   unlimit(m_network.remove(gone));
+  m_removal = {};
+  m_touched.clear();
+  m_stiffening.reset();
 }
 
 }  // namespace concord::particle::delaunay

@@ -6,6 +6,7 @@
 #include "particle/core/force_model.hpp"
 #include "particle/core/tangent.hpp"
 #include "particle/delaunay/fracture_sweep.hpp"
+#include "particle/delaunay/stiffening.hpp"
 
 #include <optional>
 
@@ -36,6 +37,8 @@ class FractureModel final : public ForceModel, public Fracturing {
 
   void advance(double t, double dt, std::span<const double> u, std::span<const double> v,
                std::span<double> f, const Executor& executor) override;
+  void take_back() override;
+  FrequencyBound stiffened(std::span<const double> u) override;
   std::span<const double> viscous_forces() const override { return m_kept_viscous; }
   const FractureRecord& record() const override { return m_record; }
   void intact_share(std::span<double> share) const override;
@@ -49,28 +52,48 @@ class FractureModel final : public ForceModel, public Fracturing {
     double t, dt;
     std::span<const double> u, v;
   };
+  enum class At { begin, end };  ///< of a step
+  /// What an advance() has removed, and the record before it.
+  struct Removal {
+    std::vector<Index> simplices, bonds;
+    std::size_t broken = 0, dead = 0;
+    double released = 0;
+    long flat = 0;
+  };
   void set_limits(const scene::Problem& problem);
+  double limit_of(Index bond) const;
   void cut(const scene::Fracture& fracture);
   void sweep(ParticleRange part, std::span<const double> u, std::span<const double> v,
              std::span<double> f, Column& viscous, std::vector<Index>* failed);
-  std::vector<Index> break_bonds(const std::vector<Index>& bonds, const Step& step);
+  std::vector<Index> inside_out(Index first, const Step& step);
+  std::vector<Index> going(const std::vector<Index>& bonds, const std::vector<Index>& inverted,
+                           std::span<const double> u) const;
+  bool too_flat(Index particle, const Stencil& sum, std::span<const double> u) const;
+  std::vector<Index> break_bonds(const std::vector<Index>& bonds,
+                                 const std::vector<Index>& inverted, const Step& step);
+  void remove(const std::vector<Index>& bonds, const std::vector<Index>& simplices, double t);
   std::vector<ParticleRange> influenced(const std::vector<Index>& particles) const;
   void unlimit(const std::vector<Index>& bonds);
   Mat3 gradient(Index particle, std::span<const double> column) const;
   Vec3 along(Index bond, std::span<const double> column) const;
-  ContactLaw contact(Index bond, std::span<const double> u, const Mat3& H_a,
-                     const Mat3& H_b) const;
-  double held_energy(const std::vector<Index>& particles, const Step& step) const;
-  double held_by_particle(Index particle, const Step& step) const;
-  double held_by_contact(Index bond, const Step& step) const;
+  ContactLaw contact(Index bond, const Vec3& u_ab, const Mat3& H_a, const Mat3& H_b) const;
+  double held_energy(const std::vector<Index>& particles, const Step& step, At at) const;
+  double held_by_particle(Index particle, const Step& step, At at) const;
+  double held_by_contact(Index bond, const Step& step, At at) const;
 
-  double m_l;  ///< l_c [m]
+  double m_l;         ///< l_c [m]
+  double m_density;   ///< G_f/l_c [J/m^3]
+  double m_critical;  ///< eps_crit
+  double m_flatness;  ///< of (DEL.8)
   Network m_network;
   BreakingLaw m_law;
   std::unique_ptr<FractureSweep> m_sweep;
   std::vector<Index> m_failed;
-  Column m_still;                    ///< velocities, where none are given
-  Column m_viscous, m_kept_viscous;  ///< of the last forces() and the last advance() [N]
+  Removal m_removal;                       ///< of the last advance()
+  std::vector<Index> m_touched;            ///< by removals since stiffened() was asked last
+  std::optional<Stiffening> m_stiffening;  ///< once it was asked
+  Column m_still;                          ///< velocities, where none are given
+  Column m_viscous, m_kept_viscous;        ///< of the last forces() and the last advance() [N]
   FractureRecord m_record;
   std::optional<TangentAssembly> m_tangent;
 };

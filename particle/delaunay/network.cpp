@@ -3,6 +3,7 @@
 #include "particle/core/edges.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace concord::particle::delaunay {
 namespace {
@@ -194,21 +195,64 @@ std::vector<Index> Network::vertices_of(std::span<const Index> simplices) const 
   return list;
 }
 
-std::vector<Index> Network::remove(std::span<const Index> simplices) {
+/// Bond vectors and volumes at simplices that came or went. Returns their edges, ascending.
+std::vector<Index> Network::rebuild(std::span<const Index> simplices) {
   const auto each = static_cast<std::size_t>(edges_of_simplex(m_dim));
-  std::vector<Index> edges, loose;
+  std::vector<Index> edges;
   for (const Index t : simplices) {
-    m_alive[t] = 0;
     const Index* first = &m_edges[static_cast<std::size_t>(t) * each];
     edges.insert(edges.end(), first, first + each);
   }
   sort_unique(edges);
-  for (const Index k : edges) {
-    rebuild_bond(k);
-    if (!connected(k)) loose.push_back(k);
-  }
+  for (const Index k : edges) rebuild_bond(k);
   for (const Index a : vertices_of(simplices)) rebuild_volume(a);
+  return edges;
+}
+
+std::vector<Index> Network::remove(std::span<const Index> simplices) {
+  for (const Index t : simplices) m_alive[t] = 0;
+  std::vector<Index> loose = rebuild(simplices);
+  std::erase_if(loose, [&](Index k) { return connected(k); });
   return loose;
+}
+
+void Network::restore(std::span<const Index> simplices) {
+  for (const Index t : simplices) m_alive[t] = 1;
+  rebuild(simplices);
+}
+
+std::vector<Index> Network::simplices_at(Index particle) const {
+  std::vector<Index> list;
+  for (const Index t : row(m_star_begin, m_star, particle)) {
+    if (alive(t)) list.push_back(t);
+  }
+  return list;
+}
+
+bool Network::whole(Index particle) const {
+  const std::span<const Index> star = row(m_star_begin, m_star, particle);
+  return std::all_of(star.begin(), star.end(), [&](Index t) { return alive(t); });
+}
+
+Stencil Network::stencil(Index particle, std::span<const Index> without) const {
+  Stencil sum;
+  const int corners = m_dim + 1;
+  const double share = m_body.thickness / corners;
+  std::array<Vec3, 4> X, g;
+  for (const Index t : row(m_star_begin, m_star, particle)) {
+    if (!alive(t) || std::binary_search(without.begin(), without.end(), t)) continue;
+    const Index* v = vertices(t);
+    for (int i = 0; i < corners; ++i) X[i] = m_body.position(v[i]);
+    sum.omega += share * std::abs(volume_gradients(m_dim, X, g));
+    for (int i = 0; i < corners; ++i) {
+      const auto known = std::find(sum.points.begin(), sum.points.end(), v[i]);
+      if (known == sum.points.end())
+        sum.points.push_back(v[i]), sum.zeta.emplace_back(share * g[i]);
+      else
+        sum.zeta[known - sum.points.begin()] += share * g[i];
+    }
+  }
+  return sum;
 }
 
 std::vector<Index> Network::crossing(const Vec3& from, const Vec3& to) const {

@@ -21,6 +21,13 @@ template <int Dim> struct SkewBond {
   Index bond, a, b;
 };
 
+/// What a particle sums over: F_i = I + sum_p (u_p - u_i) (x) zeta_ip / Omega_i.
+struct Stencil {
+  double omega = 0;           ///< Omega_i [m^3]
+  std::vector<Index> points;  ///< all vertices of its simplices, itself too if it has any
+  std::vector<Vec3> zeta;     ///< zeta_ip of each; they sum to zero [m^2]
+};
+
 /// Each bond once, in the row of its lower-numbered particle a, rows ascending. What is left
 /// depends on which simplices are gone, not on the order in which they went.
 class Network {
@@ -62,6 +69,16 @@ class Network {
   /// their vertices. Masses stay. Returns the bonds that have no simplex left by it.
   std::vector<Index> remove(std::span<const Index> simplices);
 
+  /// Puts simplices back that remove() took, to the bit.
+  void restore(std::span<const Index> simplices);
+
+  /// Simplices left at a particle, ascending.
+  std::vector<Index> simplices_at(Index particle) const;
+  /// Whether a particle has all its simplices.
+  bool whole(Index particle) const;
+  /// What a particle would sum over without some simplices (ascending).
+  Stencil stencil(Index particle, std::span<const Index> without = {}) const;
+
   /// Bonds that cross the segment, in 3D the plane through it that is normal to X-Y; a particle
   /// on its line counts as lying to its left.
   std::vector<Index> crossing(const Vec3& from, const Vec3& to) const;
@@ -77,6 +94,7 @@ class Network {
   void find_bonds();
   void find_simplices();
   bool closed(Index bond) const;
+  std::vector<Index> rebuild(std::span<const Index> simplices);
   void rebuild_bond(Index bond);
   template <int Dim> void set_skew(std::vector<SkewBond<Dim>>& skew, Index bond, const Vec3& s);
   void rebuild_volume(Index particle);
