@@ -20,11 +20,13 @@ namespace concord::scene {
 ///
 /// Names are unique in the file, and begin with the part that owns them. Whatever is asked for
 /// and is not there, or has another size than expected, throws InputError with the file's name.
+/// A checksum over all of the file, names and sizes included, is compared before anything is
+/// read.
 class Checkpoint {
  public:
   /// Begins to save, in memory; finish() writes `file`.
   static Checkpoint to(const std::filesystem::path& file);
-  /// Opens a state that was saved.
+  /// Opens a state that was saved. Throws InputError for what is no checkpoint, or damaged.
   static Checkpoint from(const std::filesystem::path& file);
   Checkpoint(Checkpoint&& other) noexcept;
   Checkpoint(const Checkpoint&) = delete;
@@ -39,6 +41,7 @@ class Checkpoint {
   void item(const std::string& name, double& value) { fixed(name, {&value, 1}); }
   void item(const std::string& name, long& value) { fixed(name, {&value, 1}); }
   void item(const std::string& name, Index& value) { fixed(name, {&value, 1}); }
+  void item(const std::string& name, std::uint64_t& value) { fixed(name, {&value, 1}); }
   void item(const std::string& name, bool& value);
   void item(const std::string& name, Vec3& value) { fixed(name, {value.data(), 3}); }
   void item(const std::string& name, std::string& value);
@@ -51,15 +54,20 @@ class Checkpoint {
   void fixed(const std::string& name, std::span<double> values);
   void fixed(const std::string& name, std::span<long> values);
   void fixed(const std::string& name, std::span<Index> values);
+  void fixed(const std::string& name, std::span<std::uint64_t> values);
   void fixed(const std::string& name, std::span<char> values);
 
   /// While restoring: whether anything was saved under a name, and how many values.
   bool has(const std::string& name) const;
   std::size_t size(const std::string& name) const;
 
+  /// While restoring: throws InputError that says what was `found` under a name, unless `good`.
+  void require(bool good, const std::string& name, const std::string& found) const;
+
   /// Ends saving: writes the file by way of a temporary beside it, so that one that was there
-  /// is replaced by a whole one or not at all. Nothing while restoring. Throws OutputError when
-  /// the disk is full or the folder read-only.
+  /// is replaced by a whole one or not at all, whenever the machine stops; it is on the disk
+  /// when this returns. Nothing while restoring. Throws OutputError when the disk is full or
+  /// the folder read-only.
   void finish();
 
  private:
@@ -77,6 +85,7 @@ class Checkpoint {
   std::filesystem::path m_file;
   bool m_restores;
   std::int64_t m_handle = -1;  ///< HDF5's, -1: closed
+  std::size_t m_bytes = 0;     ///< of the file that is read
 };
 
 /// How a run keeps its state.

@@ -1,12 +1,13 @@
 #include "scene/continued_output.hpp"
 
+#include "scene/crc64.hpp"
 #include "scene/errors.hpp"
+#include "scene/safe_file.hpp"
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cstring>
-#include <fstream>
 
 namespace concord::scene {
 namespace fs = std::filesystem;
@@ -18,15 +19,14 @@ InputError not_ours(const fs::path& file, int line, const std::string& found) {
   return {{file.string(), line}, "history", found, "the rows written before the checkpoint"};
 }
 
-std::string beginning(const fs::path& file, std::uintmax_t bytes) {
+std::string beginning(const fs::path& file, std::uintmax_t bytes, std::uint64_t digest) {
   std::error_code absent;
-  if (fs::file_size(file, absent) < bytes || absent)
-    throw not_ours(file, 0, absent ? "nothing" : "less than that");
-  std::string text(bytes, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(bytes)))
-    throw not_ours(file, 0, "an unreadable file");
-  return text;
+  const std::uintmax_t size = fs::file_size(file, absent);
+  if (absent) throw not_ours(file, 0, "nothing");
+  if (size < bytes) throw not_ours(file, 0, fmt::format("less: {} of {} bytes", size, bytes));
+  if (digest != 0 && digest_of(file, bytes) != digest) throw not_ours(file, 0, "other rows");
+  const std::vector<char> text = read_bytes(file, bytes);
+  return {text.begin(), text.end()};
 }
 
 /// Numbers as HistoryWriter writes them: the shortest text that reads back to the same bits.
@@ -51,9 +51,17 @@ OutputError::OutputError(const fs::path& file, const std::string& reason)
     : std::runtime_error(fmt::format("cannot write {}: {}", file.string(),
                                      reason.empty() ? reason_of_errno() : reason)) {}
 
+std::uint64_t digest_of(const fs::path& file, std::optional<std::uintmax_t> bytes) {
+  try {
+    return crc64_of(read_bytes(file, bytes ? *bytes : fs::file_size(file)));
+  } catch (const std::runtime_error&) {  // of the file system too
+    return 0;
+  }
+}
+
 HistoryWriter continue_history(const fs::path& file, const std::vector<std::string>& columns,
-                               std::uintmax_t bytes) {
-  const std::string old = beginning(file, bytes);
+                               std::uintmax_t bytes, std::uint64_t digest) {
+  const std::string old = beginning(file, bytes, digest);
   std::vector<std::vector<double>> rows;
   int line = 0;
   for (std::size_t begin = 0; begin < old.size();) {
@@ -75,6 +83,7 @@ HistoryWriter continue_history(const fs::path& file, const std::vector<std::stri
     for (const std::vector<double>& row : rows) writer.append(row);
   });
   if (fs::file_size(temporary) != bytes) throw not_ours(file, line, "other digits");
+  bring_to_disk(temporary);
   fs::rename(temporary, file);  // the writer goes on with it under that name
   return writer;
 }

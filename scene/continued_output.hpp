@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,14 +43,25 @@ void add_frame(const std::filesystem::path& folder, FrameList& frames, double ti
                std::span<const Index> connectivity = {}, std::span<const Index> offsets = {},
                std::span<const unsigned char> types = {});
 
-/// The frames at these times are those that stay: writes `fields.hdf.series` of them, and
-/// removes later ones. Throws InputError for one that is not there.
-FrameList keep_frames(const std::filesystem::path& folder, std::span<const double> times);
+/// Checksum (crc64.hpp) of the first `bytes` of a file, or of all of it; 0 where they cannot be
+/// read.
+std::uint64_t digest_of(const std::filesystem::path& file,
+                        std::optional<std::uintmax_t> bytes = {});
 
-/// Goes on with a history of which the first `bytes` stay. Throws InputError when they are not
-/// there, or not rows of these columns as HistoryWriter wrote them.
+/// The frames at these times, which have to be there with these digests (0: any). Changes
+/// nothing. Throws InputError for one that is not.
+FrameList kept_frames(const std::filesystem::path& folder, std::span<const double> times,
+                      std::span<const std::uint64_t> digests);
+
+/// These are all the frames: writes `fields.hdf.series`, and removes later ones.
+void end_frames(const std::filesystem::path& folder, const FrameList& frames);
+
+/// Goes on with a history of which the first `bytes`, with this digest (0: any), stay. Throws
+/// InputError when they are not there, or not rows of these columns as HistoryWriter wrote
+/// them.
 HistoryWriter continue_history(const std::filesystem::path& file,
-                               const std::vector<std::string>& columns, std::uintmax_t bytes);
+                               const std::vector<std::string>& columns, std::uintmax_t bytes,
+                               std::uint64_t digest);
 
 /// After a row that could not be written: cuts what came after the first `bytes`.
 void cut_back(const std::filesystem::path& file, std::uintmax_t bytes) noexcept;

@@ -129,16 +129,23 @@ void write_provenance(hid_t file, double time) {
 
 }  // namespace
 
+Hdf5Handle new_frame(double time, std::span<const Vec3> points,
+                     const std::vector<FrameField>& point_fields,
+                     std::span<const Index> connectivity, std::span<const Index> offsets,
+                     std::span<const unsigned char> types) {
+  const QuietHdf5 quiet;
+  Hdf5Handle handle = new_hdf5_file();
+  write_grid(handle, points, point_fields,
+             cells_of(points.size(), connectivity, offsets, types));
+  write_provenance(handle, time);
+  return handle;
+}
+
 void write_frame(const std::filesystem::path& file, double time, std::span<const Vec3> points,
                  const std::vector<FrameField>& point_fields,
                  std::span<const Index> connectivity, std::span<const Index> offsets,
                  std::span<const unsigned char> types) {
-  const QuietHdf5 quiet;
-  const Hdf5Handle handle = new_hdf5_file();
-  write_grid(handle, points, point_fields,
-             cells_of(points.size(), connectivity, offsets, types));
-  write_provenance(handle, time);
-  write_hdf5_file(handle, file);
+  write_hdf5_file(new_frame(time, points, point_fields, connectivity, offsets, types), file);
 }
 
 namespace {
@@ -171,20 +178,26 @@ void add_frame(const std::filesystem::path& folder, FrameList& frames, double ti
   }
 }
 
-FrameList keep_frames(const std::filesystem::path& folder, std::span<const double> times) {
+FrameList kept_frames(const std::filesystem::path& folder, std::span<const double> times,
+                      std::span<const std::uint64_t> digests) {
   FrameList frames;
   for (const double time : times) {
-    frames.emplace_back(frame_name(frames.size()), time);
-    const std::filesystem::path file = folder / frames.back().first;
-    if (!std::filesystem::is_regular_file(file))
-      throw InputError({file.string()}, "frame", "nothing",
+    const std::size_t k = frames.size();
+    frames.emplace_back(frame_name(k), time);
+    const std::filesystem::path file = folder / frames[k].first;
+    const bool there = std::filesystem::is_regular_file(file);
+    if (!there || k >= digests.size() || (digests[k] != 0 && digest_of(file) != digests[k]))
+      throw InputError({file.string()}, "frame", there ? "another one" : "nothing",
                        "the frames that were written before the checkpoint");
   }
+  return frames;
+}
+
+void end_frames(const std::filesystem::path& folder, const FrameList& frames) {
   write_series(folder, frames);
-  for (std::size_t later = times.size(); std::filesystem::remove(folder / frame_name(later));
+  for (std::size_t later = frames.size(); std::filesystem::remove(folder / frame_name(later));
        ++later) {
   }
-  return frames;
 }
 
 FrameWriter::FrameWriter(const std::filesystem::path& folder) : m_folder(folder) {

@@ -1,12 +1,11 @@
 // history.csv, and files that are never half written.
 
-#include "scene/continued_output.hpp"
+#include "scene/output.hpp"
+
+#include "scene/safe_file.hpp"
 
 #include <cassert>
-#include <cstdio>
 #include <fmt/format.h>
-#include <iterator>
-#include <stdexcept>
 
 namespace concord::scene {
 
@@ -27,21 +26,7 @@ void HistoryWriter::append(std::span<const double> row) {
 
 void write_file(const std::filesystem::path& file, const std::string& text) {
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  const std::filesystem::path temporary = file.string() + ".part";
-  try {
-    writing(file, [&] {
-      std::ofstream stream;
-      stream.exceptions(std::ios::badbit | std::ios::failbit);
-      stream.open(temporary, std::ios::binary | std::ios::trunc);
-      stream << text << std::flush;
-      stream.close();
-      std::filesystem::rename(temporary, file);
-    });
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  write_whole(file, {text}, Reach::system);
 }
 
 }  // namespace concord::scene

@@ -2,10 +2,12 @@
 
 #include "particle/core/leapfrog.hpp"
 #include "scene/build_info.hpp"
+#include "scene/safe_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace concord::particle {
 namespace {
@@ -87,7 +89,30 @@ void Checkpoints::restore(const Items& items) {
   m_last = Clock::now();
 }
 
-void keep(FractureRecord& record, scene::Checkpoint& state) {
+namespace {
+
+/// Of a record: every bond has ends a < b, every simplex went once, times never go back.
+bool possible(const FractureRecord& record, const Body& body) {
+  double t = before_start;
+  for (const BrokenBond& bond : record.broken) {
+    if (bond.a < 0 || bond.a >= bond.b || bond.b >= body.n || !(bond.t >= t)) return false;
+    t = bond.t;
+  }
+  t = before_start;
+  std::vector<char> gone(body.triangulation.size(), 0);
+  for (const DeadSimplex& dead : record.dead) {
+    if (dead.simplex < 0 || static_cast<std::size_t>(dead.simplex) >= gone.size() ||
+        gone[dead.simplex] != 0 || !(dead.t >= t))
+      return false;
+    gone[dead.simplex] = 1;
+    t = dead.t;
+  }
+  return true;
+}
+
+}  // namespace
+
+void keep(FractureRecord& record, scene::Checkpoint& state, const Body& body) {
   std::vector<double> t_broken, t_dead;
   std::vector<Index> a, b, dead;
   for (const BrokenBond& bond : record.broken)
@@ -100,18 +125,15 @@ void keep(FractureRecord& record, scene::Checkpoint& state) {
   state.item("record.dead", dead);
   state.item("record.released", record.released);
   if (!state.restores()) return;
-  const auto negative = [](const std::vector<Index>& list) {
-    return std::any_of(list.begin(), list.end(), [](Index k) { return k < 0; });
-  };
-  if (a.size() != t_broken.size() || b.size() != a.size() || dead.size() != t_dead.size() ||
-      negative(a) || negative(b) || negative(dead))
-    throw InputError({state.file().string()}, "record", "lists that do not fit together",
-                     "a checkpoint that this program wrote");
+  state.require(a.size() == t_broken.size() && b.size() == a.size() &&
+                    dead.size() == t_dead.size(),
+                "record", "lists that do not fit together");
   record.broken.clear();
   for (std::size_t k = 0; k < t_broken.size(); ++k)
     record.broken.push_back({t_broken[k], a[k], b[k]});
   record.dead.clear();
   for (std::size_t k = 0; k < t_dead.size(); ++k) record.dead.push_back({t_dead[k], dead[k]});
+  state.require(possible(record, body), "record", "bonds or simplices that the body has not");
 }
 
 void ForceModel::keep(scene::Checkpoint& state) { m_constitution.keep(state); }
@@ -127,10 +149,13 @@ void PlasticHistory::keep(scene::Checkpoint& state) {
 }
 
 void ExternalWork::keep(scene::Checkpoint& state) {
+  m_u.resize(m_dofs.size());
+  m_force.resize(m_dofs.size());
+  m_start_u.resize(m_constant.size());
   state.item("work.done", m_work);
-  state.item("work.u", m_u);
-  state.item("work.force", m_force);
-  state.item("work.start_u", m_start_u);
+  state.fixed("work.u", m_u);
+  state.fixed("work.force", m_force);
+  state.fixed("work.start_u", m_start_u);
 }
 
 void Dissipation::keep(scene::Checkpoint& state) { state.item("dissipation.done", m_work); }
@@ -163,19 +188,41 @@ void Recorder::Account::keep(scene::Checkpoint& state) {
   crack_toll.keep(state);
 }
 
+/// History and frames so far are on the disk, also those that are new since the last time; the
+/// times of the frames.
+std::vector<double> Recorder::safe_files() {
+  std::vector<double> times;
+  for (const auto& [name, time] : m_frames) times.push_back(time);
+  scene::bring_to_disk(history_file());
+  for (std::size_t k = m_frame_digests.size(); k < m_frames.size(); ++k) {
+    scene::bring_to_disk(m_folder / m_frames[k].first);
+    m_frame_digests.push_back(scene::digest_of(m_folder / m_frames[k].first));
+  }
+  scene::bring_to_disk(m_folder);
+  return times;
+}
+
 /// What the cracks measure follows from the model's record alone.
 void Recorder::keep(scene::Checkpoint& state) {
   m_account.keep(state);
   if (m_folder.empty()) return;
-  auto bytes = static_cast<long>(m_history_bytes);
   std::vector<double> times;
-  for (const auto& [name, time] : m_frames) times.push_back(time);
+  std::uint64_t bytes = m_history_bytes, digest = 0;
+  if (!state.restores()) {
+    times = safe_files();
+    digest = scene::digest_of(history_file(), bytes);
+  }
   state.item("recorder.history_bytes", bytes);
+  state.item("recorder.history_digest", digest);
   state.item("recorder.frame_times", times);
+  state.item("recorder.frame_digests", m_frame_digests);
   if (!state.restores()) return;
-  m_history = scene::continue_history(history_file(), columns(), bytes);
+  state.require(times.size() == m_frame_digests.size(), "recorder",
+                "lists that do not fit together");
+  if (m_write_frames) m_frames = scene::kept_frames(m_folder, times, m_frame_digests);
+  m_history = scene::continue_history(history_file(), columns(), bytes, digest);
   m_history_bytes = bytes;
-  if (m_write_frames) m_frames = scene::keep_frames(m_folder, times);
+  if (m_write_frames) scene::end_frames(m_folder, m_frames);
 }
 
 void Leapfrog::keep(scene::Checkpoint& state, Recorder& recorder, LeapfrogOutcome& outcome) {
@@ -200,6 +247,9 @@ void Leapfrog::keep(scene::Checkpoint& state, Recorder& recorder, LeapfrogOutcom
   state.item("outcome.settled", outcome.settled);
   state.item("outcome.particle_steps", outcome.particle_steps);
   state.item("outcome.resumed_at", outcome.resumed_at);
+  state.require(
+      std::isfinite(m_t) && m_t >= 0 && m_dt >= 0 && outcome.steps >= 0, "t",
+      fmt::format("{} s after {} steps, with steps up to {} s", m_t, outcome.steps, m_dt));
   m_work.keep(state);
   m_dissipation.keep(state);
   m_model.keep(state);

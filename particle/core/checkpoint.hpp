@@ -2,6 +2,7 @@
 // Checkpoints of explicit runs: when they are written, and how it is known that one belongs to
 // the run that asks for it. What is in them: checkpoint.cpp, and ForceModel::keep of models.
 
+#include "particle/core/body.hpp"
 #include "particle/core/fracturing.hpp"
 #include "scene/checkpoint.hpp"
 
@@ -11,8 +12,9 @@
 
 namespace concord::particle {
 
-/// What has broken, saved or restored.
-void keep(FractureRecord& record, scene::Checkpoint& state);
+/// What has broken in a body, saved or restored. Throws InputError for what cannot have broken
+/// in it.
+void keep(FractureRecord& record, scene::Checkpoint& state, const Body& body);
 
 /// Everything that decides the bits of a run, by name, as text; not the number of threads.
 using RunFacts = std::vector<std::pair<std::string, std::string>>;

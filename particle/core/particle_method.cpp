@@ -4,10 +4,10 @@
 #include "particle/core/interpolant.hpp"
 #include "particle/core/leapfrog.hpp"
 #include "particle/core/statics.hpp"
+#include "scene/crc64.hpp"
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/format.h>
 
@@ -261,22 +261,6 @@ std::shared_ptr<const scene::Field> field_of(Body& body, const scene::Samples& s
   return std::make_shared<ParticleField>(body, samples.X, samples.u, std::move(H));
 }
 
-/// FNV-1a (Fowler, Noll, Vo; RFC 9923) over numbers instead of bytes: to tell bodies apart.
-class Fingerprint {
- public:
-  template <class Values> void add(const Values& values) {
-    for (const auto value : values) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &value, sizeof value);
-      m_hash = (m_hash ^ bits) * 0x100000001b3;
-    }
-  }
-  std::uint64_t value() const { return m_hash; }
-
- private:
-  std::uint64_t m_hash = 0xcbf29ce484222325;
-};
-
 /// What a checkpoint must have been made with: everything but the number of threads.
 RunFacts facts(const std::string& method, const scene::Problem& problem,
                const scene::RunRequest& request, const scene::Settings& settings,
@@ -289,13 +273,12 @@ RunFacts facts(const std::string& method, const scene::Problem& problem,
                  {"seed", fmt::format("{}", request.seed)},
                  {"frames", request.write_frames ? "on" : "off"}};
   for (const auto& [key, value] : settings.all()) facts.emplace_back(method + "." + key, value);
-  Fingerprint particles;
-  particles.add(body.X);
-  particles.add(body.V);
-  particles.add(body.m);
-  particles.add(body.triangulation.simplices);
-  facts.emplace_back("particles", fmt::format("{}, with the fingerprint {:016x}", body.bulk,
-                                              particles.value()));
+  std::uint64_t particles = scene::crc64_of(body.X);
+  particles = scene::crc64_of(body.V, particles);
+  particles = scene::crc64_of(body.m, particles);
+  particles = scene::crc64_of(body.triangulation.simplices, particles);
+  facts.emplace_back("particles",
+                     fmt::format("{}, with the fingerprint {:016x}", body.bulk, particles));
   return facts;
 }
 

@@ -36,7 +36,9 @@ class Recorder {
   /// as it was, here and on disk; no rows can follow.
   void row(const State& state);
   void frame(const State& state);
-  /// Saved or restored, files included: to be asked last.
+  /// Saved or restored, files included: to be asked last. Before it is saved they are brought
+  /// to the disk. While it is restored, no file is changed before all have been found to be
+  /// those of the checkpoint (InputError).
   void keep(scene::Checkpoint& state);
   /// Quantities of interest of a state: point and average as NAME_x.. [m], reaction as NAME_x..
   /// [N], maximum as NAME.
@@ -70,6 +72,7 @@ class Recorder {
   void follow(const Balance& b, const Vec3& impulse);
   void follow(const Balance& b, const Roughness& roughness);
   void add_row(const State& state);
+  std::vector<double> safe_files();
   std::filesystem::path history_file() const { return m_folder / "history.csv"; }
   /// Gradients at a state, in a buffer that the next call overwrites.
   std::span<const Mat3> gradients(const State& state);
@@ -87,6 +90,7 @@ class Recorder {
   scene::HistoryWriter m_history;
   std::uintmax_t m_history_bytes = 0;  ///< all rows that are there as a whole
   scene::FrameList m_frames;
+  std::vector<std::uint64_t> m_frame_digests;  ///< of those that a checkpoint knows
   std::vector<Mat3> m_H;
   std::vector<double> m_values;
   /// Gathered over the rows.

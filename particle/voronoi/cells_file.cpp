@@ -1,8 +1,7 @@
 // Cells as polygons in a VTKHDF file, for pictures like the paper's Fig. 3.
 
 #include "particle/voronoi/cells.hpp"
-#include "scene/hdf5_handle.hpp"
-#include "scene/output.hpp"
+#include "scene/hdf5_file.hpp"
 
 #include <cassert>
 
@@ -41,19 +40,17 @@ void write_cells(const std::filesystem::path& file, const Cells& cells,
   }
   const std::vector<unsigned char> types(particle.size(),
                                          cells.dim == 2 ? vtk_line : vtk_polygon);
-  const std::filesystem::path temporary = file.string() + ".part";
-  scene::write_frame(temporary, 0, polygons.points, {}, connectivity, offsets, types);
+  const Hdf5Handle frame =
+      scene::new_frame(0, polygons.points, {}, connectivity, offsets, types);
   {
-    const Hdf5Handle handle(H5Fopen(temporary.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose,
-                            "open " + temporary.string());
     const Hdf5Handle data(
-        H5Gcreate2(handle, "/VTKHDF/CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+        H5Gcreate2(frame, "/VTKHDF/CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
         "make group CellData");
     write_column(data, "particle", particle);
     write_column(data, "neighbour", neighbour);
     write_column(data, "wall", wall);
   }
-  std::filesystem::rename(temporary, file);
+  scene::write_hdf5_file(frame, file);
 }
 
 }  // namespace concord::particle::voronoi

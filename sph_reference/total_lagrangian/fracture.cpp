@@ -247,7 +247,7 @@ void FracturingSph::keep(scene::Checkpoint& state) {
     }
     break_springs(broken, {}, {particle::before_start, 0, {}, {}});
   }
-  particle::keep(m_record, state);
+  particle::keep(m_record, state, m_body);
 }
 
 void FracturingSph::intact_share(std::span<double> share) const {

@@ -2,6 +2,7 @@
 
 #include "scene/output.hpp"
 #include "studies/driver/cache.hpp"
+#include "studies/driver/folder_lock.hpp"
 #include "studies/driver/given.hpp"
 #include "studies/driver/progress.hpp"
 #include "studies/probes/probe.hpp"
@@ -72,6 +73,7 @@ int probe_command(const ProbeOptions& options) {
           ? build_home() / "probes" / (options.test + "-" + problem.name + "-" + options.method)
           : options.out;
   fs::create_directories(out);
+  const FolderLock lock(out, "--out");
   fs::remove(out / "summary.json");  // of an earlier one: nobody must take it for ours
   const scene::RunIdentity id{problem.name,  options.method,     settings.variant(),
                               problem.dim(), options.resolution, options.perturb,

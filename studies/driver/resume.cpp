@@ -29,13 +29,17 @@ constexpr const char* what_can_be_resumed =
     "the folder of a run that was stopped before its end: of the explicit runs of particle "
     "methods; finite elements and static solves keep no checkpoints";
 
-/// Throws InputError that says why a folder without a checkpoint has none.
+nlohmann::json summary_of(const fs::path& folder) {
+  std::ifstream stream(folder / "summary.json");
+  return nlohmann::json::parse(stream, nullptr, false);
+}
+
+/// Throws InputError that says why a folder has no run to go on with.
 [[noreturn]] void refuse(const fs::path& folder) {
   std::string found = "a folder without a checkpoint";
   if (!fs::is_directory(folder)) found = "no folder";
-  std::ifstream stream(folder / "summary.json");
-  const auto summary = nlohmann::json::parse(stream, nullptr, false);
-  if (summary.is_object() && !summary.contains("error"))
+  const auto summary = summary_of(folder);
+  if (is_complete(folder))
     found = "a run that is complete";
   else if (summary.is_object())
     found = fmt::format("a run of {} on {} that left no checkpoint ({})",
@@ -43,12 +47,6 @@ constexpr const char* what_can_be_resumed =
                         summary.value("error", "?"));
   throw InputError({"command line"}, "--resume", folder.string() + ": " + found,
                    what_can_be_resumed);
-}
-
-bool complete(const fs::path& folder) {
-  std::ifstream stream(folder / "summary.json");
-  const auto summary = nlohmann::json::parse(stream, nullptr, false);
-  return summary.is_object() && !summary.contains("error");
 }
 
 /// A library scene by its name, a file of the user's own by its full path.
@@ -62,6 +60,11 @@ std::string place_of(const std::string& scene) {
 }  // namespace
 
 fs::path checkpoint_file(const fs::path& folder) { return folder / "checkpoint.hdf"; }
+
+bool is_complete(const fs::path& folder) {
+  const auto summary = summary_of(folder);
+  return summary.is_object() && !summary.contains("error");
+}
 
 std::string request_text(const RunOptions& options) {
   return nlohmann::ordered_json{{"scene", place_of(options.scene)},
@@ -86,7 +89,7 @@ RunOptions resumed_options(const RunOptions& options) {
                        "--threads and --checkpoint; the rest is that of the run that goes on");
   }
   const fs::path file = checkpoint_file(options.resume);
-  if (!fs::exists(file) || complete(options.resume)) refuse(options.resume);
+  if (!fs::exists(file) || is_complete(options.resume)) refuse(options.resume);
   RunOptions run;
   try {
     const auto saved = nlohmann::json::parse(scene::checkpoint_request(file));
@@ -119,9 +122,10 @@ void throw_with_advice(const std::exception& error, const fs::path& folder) {
   throw;
 }
 
-bool remove_checkpoint(const fs::path& folder) {
-  fs::remove(checkpoint_file(folder).string() + ".part");
-  return fs::remove(checkpoint_file(folder));
+void remove_checkpoint(const fs::path& folder) {
+  std::error_code ignored;
+  fs::remove(checkpoint_file(folder).string() + ".part", ignored);
+  fs::remove(checkpoint_file(folder), ignored);
 }
 
 }  // namespace concord::studies

@@ -9,6 +9,10 @@ namespace concord::studies {
 /// The checkpoint of a run in a folder.
 std::filesystem::path checkpoint_file(const std::filesystem::path& folder);
 
+/// Whether a folder holds a run that came to its end. (A checkpoint beside it is left over: the
+/// program was killed before it could remove it.)
+bool is_complete(const std::filesystem::path& folder);
+
 /// What a checkpoint keeps of the command line, as text.
 std::string request_text(const RunOptions& options);
 
@@ -22,7 +26,7 @@ RunOptions resumed_options(const RunOptions& options);
 [[noreturn]] void throw_with_advice(const std::exception& error,
                                     const std::filesystem::path& folder);
 
-/// Removes the checkpoint of a run that is complete, or begins anew. Whether there was one.
-bool remove_checkpoint(const std::filesystem::path& folder);
+/// Removes the checkpoint of a run that is complete, or begins anew, where that is possible.
+void remove_checkpoint(const std::filesystem::path& folder);
 
 }  // namespace concord::studies

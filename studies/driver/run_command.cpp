@@ -3,7 +3,9 @@
 #include "scene/continued_output.hpp"
 #include "scene/norms.hpp"
 #include "scene/reader.hpp"
+#include "scene/safe_file.hpp"
 #include "studies/driver/cache.hpp"
+#include "studies/driver/folder_lock.hpp"
 #include "studies/driver/given.hpp"
 #include "studies/driver/memory.hpp"
 #include "studies/driver/progress.hpp"
@@ -14,6 +16,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 namespace concord::studies {
 namespace fs = std::filesystem;
@@ -70,9 +73,11 @@ void check(const RunOptions& options) {
 /// Nobody must take what an earlier run left for ours. What a run that was stopped left (its
 /// summary says so) stays until this one has been set up: bad input must not take it.
 void clear(const fs::path& out, bool resumes) {
-  fs::create_directories(out);
-  const bool stopped = fs::exists(checkpoint_file(out));
-  if (!stopped) fs::remove(out / "summary.json");
+  const bool stopped = fs::exists(checkpoint_file(out)) && !is_complete(out);
+  if (!stopped) {
+    remove_checkpoint(out);
+    fs::remove(out / "summary.json");
+  }
   if (!resumes && stopped)
     fmt::print(stderr, "concord: the run that was stopped in {} begins anew, not by --resume\n",
                out.string());
@@ -117,6 +122,8 @@ void write_summary(const scene::RunIdentity& id, scene::Result& result, const Ti
 }  // namespace
 
 int run_command(const RunOptions& asked) {
+  std::optional<FolderLock> lock;
+  if (!asked.resume.empty()) lock.emplace(asked.resume, "--resume");
   const RunOptions options = asked.resume.empty() ? asked : resumed_options(asked);
   check(options);
   const scene::Method& method = scene::MethodRegistry::instance().find(options.method);
@@ -127,6 +134,8 @@ int run_command(const RunOptions& asked) {
                            ? build_home() / "runs" / (problem.name + "-" + options.method)
                            : options.out;
   scene::RunRequest request = request_of(options, problem);
+  fs::create_directories(out);
+  if (!lock) lock.emplace(out, "--out");
   clear(out, !options.resume.empty());
   const scene::RunIdentity id{problem.name,  options.method,     settings.variant(),
                               problem.dim(), options.resolution, options.perturb,
@@ -149,6 +158,8 @@ int run_command(const RunOptions& asked) {
     const Timings timings = time_runs(method, problem, request, options.repeats);
     progress.finish();
     write_summary(id, result, timings, bytes_per_particle, out);
+    // Until the results are on the disk the checkpoint is worth more than they are.
+    if (fs::exists(checkpoint_file(out))) scene::bring_all_to_disk(out);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {

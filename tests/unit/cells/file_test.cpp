@@ -1,7 +1,11 @@
 // Cells written as polygons.
 
+#include "scene/continued_output.hpp"
 #include "scene/hdf5_handle.hpp"
 #include "tests/unit/cells/bodies.hpp"
+#include "tests/unit/scene/file_size_limit.hpp"
+
+#include <fstream>
 
 namespace concord::particle::voronoi {
 namespace {
@@ -65,6 +69,34 @@ TEST(VoronoiFile, SegmentsInThePlane) {
     EXPECT_NEAR(along.norm(), cells.faces[cells.polygons.face[p]].A, 1e-14);
     EXPECT_EQ(along[2], 0);
   }
+}
+
+/// At whichever part of the file there is no room any more.
+TEST(VoronoiFile, AFullDiskLeavesTheOneBefore) {
+  const scene::Mesh mesh = surface_of(problem_on(box(1, 1, 1), "3D"), .5);
+  const auto X = random_points(200, 3, {.05, .05, .05}, {.95, .95, .95}, 3);
+  const Cells cells = make_cells(mesh, 3, 1, X, Executor(1), {true});
+  const auto path = std::filesystem::path(testing::TempDir()) / "cells-full.hdf";
+  write_cells(path, cells);
+  const auto size = std::filesystem::file_size(path);
+  std::filesystem::remove(path);
+  std::ofstream(path) << "before";
+  for (const std::uintmax_t room : {size - 1, size - size / 20, size / 2, size / 100}) {
+    const concord::test::FileSizeLimit limit(room);
+    try {
+      write_cells(path, cells);
+      ADD_FAILURE() << "the limit did not bite";
+    } catch (const scene::OutputError& error) {
+      EXPECT_NE(std::string(error.what()).find("cannot write " + path.string()),
+                std::string::npos)
+          << error.what();
+    }
+    EXPECT_EQ(std::filesystem::file_size(path), 6u);
+    EXPECT_FALSE(std::filesystem::exists(path.string() + ".part"));
+  }
+  write_cells(path, cells);
+  EXPECT_EQ(std::filesystem::file_size(path), size);
+  std::filesystem::remove(path);
 }
 
 }  // namespace

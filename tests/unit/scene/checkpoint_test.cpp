@@ -1,35 +1,22 @@
-// Checkpoints and the files of a run that goes on: bits, damaged files, full disks.
+// Checkpoints: bits, damaged files, full disks, what reaches the disk.
 
 #include "scene/checkpoint.hpp"
 #include "scene/continued_output.hpp"
-#include "scene/errors.hpp"
-#include "scene/frame_reader.hpp"
+#include "tests/unit/scene/disk_calls.hpp"
 #include "tests/unit/scene/file_size_limit.hpp"
+#include "tests/unit/scene/file_texts.hpp"
 #include "tests/unit/scene/scratch_scene.hpp"
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <gtest/gtest.h>
 #include <limits>
-#include <sstream>
 
 using namespace concord;
 using namespace concord::scene;
-using concord::test::FileSizeLimit;
+using namespace concord::test;
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
 
 /// Everything that an item can be.
 struct Everything {
@@ -77,22 +64,6 @@ void save(const fs::path& file, Everything e) {
   state.finish();
 }
 
-/// The message of the InputError that `call` throws.
-template <class Call> std::string input_error(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
-}
-
-void expect_words(const std::string& message, const std::vector<std::string>& words) {
-  for (const std::string& word : words)
-    EXPECT_NE(message.find(word), std::string::npos) << word << " is not in: " << message;
-}
-
 }  // namespace
 
 TEST(Checkpoint, RestoresBits) {
@@ -132,17 +103,49 @@ TEST(Checkpoint, AnUnfinishedOneLeavesTheOneBefore) {
   EXPECT_FALSE(fs::exists(file.string() + ".part"));
 }
 
-TEST(Checkpoint, DamagedOnesAreBadInput) {
+TEST(Checkpoint, WhatIsNoCheckpointIsBadInput) {
   const test::ScratchScene scratch("");
   const fs::path file = scratch.folder / "state.hdf";
   const auto open = [&] { (void)Checkpoint::from(file); };
   expect_words(input_error(open), {"state.hdf", "not there"});
-  write(file, "this is no checkpoint");
-  expect_words(input_error(open), {"state.hdf", "unreadable"});
+  for (const std::string text : {"", "short", "this is no checkpoint"}) {
+    write(file, text);
+    expect_words(input_error(open), {"state.hdf", "unreadable", "no checkpoint"});
+  }
+  fs::create_directory(scratch.folder / "folder");
+  expect_words(input_error([&] { (void)Checkpoint::from(scratch.folder / "folder"); }),
+               {"folder", "unreadable"});
+}
+
+/// Any byte, any length: items of few values, their names and sizes included.
+TEST(Checkpoint, DamagedOnesAreBadInput) {
+  const test::ScratchScene scratch("");
+  const fs::path file = scratch.folder / "state.hdf", other = scratch.folder / "other.hdf";
   save(file, example());
   const std::string whole = content(file);
-  write(file, whole.substr(0, whole.size() / 2));
-  expect_words(input_error(open), {"state.hdf", "unreadable"});
+  const auto open = [&] { (void)Checkpoint::from(other); };
+  write(other, whole);
+  ASSERT_NO_THROW(open());
+  std::fstream stream(other, std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](std::size_t k, char byte) {
+    stream.seekp(static_cast<std::streamoff>(k)).put(byte).flush();
+  };
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    put(k, static_cast<char>(whole[k] ^ (1 << k % 8)));
+    expect_words(input_error(open), {"other.hdf", "unreadable"});
+    put(k, whole[k]);
+  }
+  ASSERT_NO_THROW(open());
+  stream.close();
+  for (std::size_t size = 0; size < whole.size(); size += 101) {
+    write(other, whole.substr(0, size));
+    expect_words(input_error(open), {"other.hdf", "unreadable"});
+  }
+}
+
+TEST(Checkpoint, OtherItemsThanThoseSavedAreBadInput) {
+  const test::ScratchScene scratch("");
+  const fs::path file = scratch.folder / "state.hdf";
   save(file, example());
   Checkpoint state = Checkpoint::from(file);
   std::vector<double> three(3);
@@ -152,6 +155,19 @@ TEST(Checkpoint, DamagedOnesAreBadInput) {
   EXPECT_TRUE(state.has("list"));
   EXPECT_FALSE(state.has("other"));
   expect_words(input_error([&] { state.item("other", number); }), {"state.hdf", "other"});
+  state.require(true, "list", "is good");
+  expect_words(input_error([&] { state.require(false, "list", "it is wrong"); }),
+               {"state.hdf", "list", "it is wrong"});
+}
+
+/// Itself, then its name.
+TEST(Checkpoint, IsOnTheDiskBeforeItTakesItsName) {
+  const test::ScratchScene scratch("");
+  const DiskCalls calls;
+  save(scratch.folder / "state.hdf", example());
+  EXPECT_EQ(calls.log(),
+            (std::vector<std::string>{"fsync state.hdf.part", "rename state.hdf",
+                                      "fsync " + scratch.folder.filename().string()}));
 }
 
 TEST(Checkpoint, AFullDiskLeavesTheOneBefore) {
@@ -176,119 +192,4 @@ TEST(Checkpoint, AFullDiskLeavesTheOneBefore) {
   Checkpoint state = Checkpoint::from(file);
   e.keep(state);
   EXPECT_EQ(e.text, example().text);
-}
-
-namespace {
-
-const std::vector<std::string> columns{"t_s", "x_m"};
-const std::string rows = "t_s,x_m\n0,0.1\n1e-05,-nan\n2e-05,5e-324\n";
-
-}  // namespace
-
-TEST(ContinuedHistory, KeepsTheRowsBeforeAndGoesOn) {
-  const test::ScratchScene scratch("");
-  const fs::path file = scratch.folder / "history.csv";
-  write(file, rows + "3e-05,7\n4e-05,8");
-  {
-    HistoryWriter writer = continue_history(file, columns, rows.size());
-    EXPECT_EQ(content(file), rows);
-    const double row[] = {3e-5, 0.3333333333333333};
-    writer.append(row);
-  }
-  EXPECT_EQ(content(file), rows + "3e-05,0.3333333333333333\n");
-  EXPECT_FALSE(fs::exists(file.string() + ".part"));
-}
-
-TEST(ContinuedHistory, OtherRowsAreBadInput) {
-  const test::ScratchScene scratch("");
-  const fs::path file = scratch.folder / "history.csv";
-  const auto go_on = [&](std::size_t bytes, const std::vector<std::string>& names = columns) {
-    return input_error([&] { (void)continue_history(file, names, bytes); });
-  };
-  expect_words(go_on(rows.size()), {"history.csv", "nothing"});
-  write(file, rows);
-  expect_words(go_on(rows.size() + 1), {"history.csv", "less"});
-  expect_words(go_on(rows.size(), {"t_s", "y_m"}), {"history.csv:1", "x_m"});
-  expect_words(go_on(rows.size() - 1), {"history.csv:4", "2e-05,5e-324"});
-  for (const std::string line : {"1,2,3", "1", "1;2", "1,", "one,2", "1,0.50"}) {
-    write(file, rows + line + "\n");
-    expect_words(go_on(rows.size() + line.size() + 1), {"history.csv:5"});
-    EXPECT_EQ(content(file), rows + line + "\n") << "stays as it was";
-  }
-}
-
-TEST(ContinuedHistory, WhatComesAfterTheLastRowIsCut) {
-  const test::ScratchScene scratch("");
-  const fs::path file = scratch.folder / "history.csv";
-  write(file, rows + "3e-05,0.33");
-  for (int i = 0; i < 2; ++i) {
-    cut_back(file, rows.size());
-    EXPECT_EQ(content(file), rows);
-  }
-  cut_back(file, 10 * rows.size());
-  EXPECT_EQ(content(file), rows) << "never made longer";
-  cut_back(scratch.folder / "none.csv", 0);
-}
-
-TEST(ContinuedFrames, KeepsThoseBeforeAndRemovesLaterOnes) {
-  const test::ScratchScene scratch("");
-  const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(1, 0, 0)};
-  FrameList frames;
-  for (const double t : {0.0, 0.5, 1.0, 1.5}) add_frame(scratch.folder, frames, t, points, {});
-  const double times[] = {0, 0.5};
-  frames = keep_frames(scratch.folder, times);
-  EXPECT_TRUE(fs::exists(scratch.folder / "fields_0001.hdf"));
-  EXPECT_FALSE(fs::exists(scratch.folder / "fields_0002.hdf"));
-  EXPECT_FALSE(fs::exists(scratch.folder / "fields_0003.hdf"));
-  add_frame(scratch.folder, frames, 0.75, points, {});
-  const std::vector<FrameEntry> series = read_frame_series(scratch.folder);
-  ASSERT_EQ(series.size(), 3u);
-  EXPECT_EQ(series[2].time, 0.75);
-  EXPECT_EQ(read_frame(series[2].file).time, 0.75);
-  fs::remove(scratch.folder / "fields_0001.hdf");
-  expect_words(input_error([&] { (void)keep_frames(scratch.folder, times); }),
-               {"fields_0001.hdf"});
-}
-
-TEST(ContinuedFrames, AFullDiskLeavesThoseBefore) {
-  const test::ScratchScene scratch("");
-  std::vector<Vec3> points(5000);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    points[i] = Vec3(std::sin(1e5 * static_cast<double>(i)), 0, 0);
-  FrameList frames;
-  add_frame(scratch.folder, frames, 0, points, {});
-  const auto size = fs::file_size(scratch.folder / "fields_0000.hdf");
-  for (const std::uintmax_t limit_bytes : {size / 2, size - 100, std::uintmax_t{2000}}) {
-    const FileSizeLimit limit(limit_bytes);
-    try {
-      add_frame(scratch.folder, frames, 1, points, {});
-      ADD_FAILURE() << "the limit did not bite";
-    } catch (const OutputError& error) {
-      expect_words(error.what(), {"cannot write", "fields_0001.hdf", "File too large"});
-    }
-    EXPECT_EQ(frames.size(), 1u);
-    EXPECT_FALSE(fs::exists(scratch.folder / "fields_0001.hdf"));
-    EXPECT_FALSE(fs::exists(scratch.folder / "fields_0001.hdf.part"));
-  }
-  ASSERT_EQ(read_frame_series(scratch.folder).size(), 1u);
-  EXPECT_EQ(read_frame(scratch.folder / "fields_0000.hdf").points.size(), points.size());
-  add_frame(scratch.folder, frames, 1, points, {});
-  EXPECT_EQ(read_frame_series(scratch.folder).size(), 2u);
-}
-
-TEST(Output, AFileThatCannotBeWrittenIsNamedWithTheReason) {
-  const test::ScratchScene scratch("");
-  const fs::path file = scratch.folder / "text";
-  write_file(file, "before");
-  {
-    const FileSizeLimit limit(100);
-    try {
-      write_file(file, std::string(1000, 'x'));
-      ADD_FAILURE() << "the limit did not bite";
-    } catch (const OutputError& error) {
-      expect_words(error.what(), {file.string(), "File too large"});
-    }
-  }
-  EXPECT_EQ(content(file), "before");
-  EXPECT_FALSE(fs::exists(file.string() + ".part"));
 }
