@@ -5,6 +5,7 @@
 #include "scene/types.hpp"
 
 #include <cstdlib>
+#include <cstring>
 #include <new>
 #include <vector>
 
@@ -21,6 +22,7 @@
 
 namespace concord::particle {
 
+typedef double v8d __attribute__((vector_size(64)));
 typedef double v4d __attribute__((vector_size(32)));
 typedef double v2d __attribute__((vector_size(16)));
 
@@ -76,6 +78,12 @@ CONCORD_INLINE v2d lane_sums(v2d a, v2d b) {
   return __builtin_shuffle(a, b, v2i{0, 2}) + __builtin_shuffle(a, b, v2i{1, 3});
 }
 
+/// Two vectors side by side.
+CONCORD_INLINE v4d twin(v2d a, v2d b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
+CONCORD_INLINE v8d twin(v4d a, v4d b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
 /// Four vectors as the rows of a matrix become its columns.
 CONCORD_INLINE void transpose(v4d& a, v4d& b, v4d& c, v4d& d) {
   typedef long long v4i __attribute__((vector_size(32)));
@@ -91,6 +99,12 @@ CONCORD_INLINE void transpose(v4d& a, v4d& b, v4d& c, v4d& d) {
 
 template <class V> CONCORD_INLINE V load(const double* p) {
   return *reinterpret_cast<const V*>(p);
+}
+/// Of any address; load() wants that of a whole vector.
+CONCORD_INLINE v4d load_anywhere(const double* p) {
+  v4d v;
+  std::memcpy(&v, p, sizeof v);
+  return v;
 }
 template <class V> CONCORD_INLINE void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
 

@@ -16,13 +16,18 @@ CONCORD_INLINE Index stress_rows(const StressConstants& c, Index first, Index la
     const int count = std::min<Index>(stress_width, last - a);
     double h[Dim * Dim][stress_width], p[Dim * Dim][stress_width];
     Tensor<Dim> tensor[stress_width];
-    for (int l = 0; l < stress_width; l += 4) {
-      const double* record[4];
-      for (int i = 0; i < 4; ++i) record[i] = H.at(a + std::min(l + i, count - 1));
-      tensors_to_lanes<Dim>(record, l, h);
+    const double* records = H.at(a);
+    alignas(64) double copies[stress_width * record_size<Dim>];
+    if (count < stress_width || H.at(a + stress_width - 1) < records) {  // few, or a ring's end
+      for (int l = 0; l < stress_width; ++l) {
+        std::memcpy(copies + l * record_size<Dim>, H.at(a + std::min(l, count - 1)),
+                    record_size<Dim> * sizeof(double));
+      }
+      records = copies;
     }
+    tensors_to_lanes<Dim>(records, h);
     const unsigned bad = stress_of_lanes<Dim, Law>(c, a, count, h, p);
-    for (int l = 0; l < stress_width; l += 4) lanes_to_tensors<Dim>(p, l, tensor + l);
+    lanes_to_tensors<Dim>(p, tensor);
     for (int l = 0; l < count; ++l) put(a + l, tensor[l]);
     if (bad != 0 && bad_particle < 0) bad_particle = a + __builtin_ctz(bad);
   }

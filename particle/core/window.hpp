@@ -105,33 +105,40 @@ template <int Dim> Mat3 tensor_of(const double* record) {
   return t;
 }
 
-/// Tensors of four records into lanes l to l + 3 of h[Dim j + i].
+/// Tensors of consecutive records into lanes, h[Dim j + i]; lanes are written whole, in one
+/// store: two halves would have to be waited for where a register of all lanes is loaded.
 template <int Dim>
-CONCORD_INLINE void tensors_to_lanes(const double* const (&record)[4], int l,
+CONCORD_INLINE void tensors_to_lanes(const double* records,
                                      double (&h)[Dim * Dim][stress_width]) {
+  static_assert(stress_width == 8);
   for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {  // in the plane a register holds a tensor
-    v4d t[4];
-    for (int i = 0; i < 4; ++i) t[i] = load<v4d>(record[i] + 4 * k);
+    v4d t[8];
+    for (int l = 0; l < 8; ++l) t[l] = load<v4d>(records + l * record_size<Dim> + 4 * k);
     transpose(t[0], t[1], t[2], t[3]);
-    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
-      std::memcpy(&h[(Dim == 3 ? 3 * k : 0) + i][l], &t[i], sizeof(v4d));
+    transpose(t[4], t[5], t[6], t[7]);
+    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i) {
+      const v8d lanes = twin(t[i], t[4 + i]);
+      std::memcpy(h[(Dim == 3 ? 3 * k : 0) + i], &lanes, sizeof lanes);
+    }
   }
 }
 
 /// The way back.
 template <int Dim>
-CONCORD_INLINE void lanes_to_tensors(const double (&p)[Dim * Dim][stress_width], int l,
-                                     Tensor<Dim>* tensor) {
+CONCORD_INLINE void lanes_to_tensors(const double (&p)[Dim * Dim][stress_width],
+                                     Tensor<Dim> (&tensor)[stress_width]) {
   for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) {
-    v4d t[4] = {};
-    for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
-      std::memcpy(&t[i], &p[(Dim == 3 ? 3 * k : 0) + i][l], sizeof(v4d));
-    transpose(t[0], t[1], t[2], t[3]);
-    for (int i = 0; i < 4; ++i) {
-      if constexpr (Dim == 3)
-        tensor[i].column[k] = t[i];
-      else
-        std::memcpy(&tensor[i], &t[i], sizeof(v4d));
+    for (int l = 0; l < stress_width; l += 4) {
+      v4d t[4] = {};
+      for (int i = 0; i < (Dim == 3 ? 3 : 4); ++i)
+        std::memcpy(&t[i], &p[(Dim == 3 ? 3 * k : 0) + i][l], sizeof(v4d));
+      transpose(t[0], t[1], t[2], t[3]);
+      for (int i = 0; i < 4; ++i) {
+        if constexpr (Dim == 3)
+          tensor[l + i].column[k] = t[i];
+        else
+          std::memcpy(&tensor[l + i], &t[i], sizeof(v4d));
+      }
     }
   }
 }

@@ -7,11 +7,11 @@
 #include "particle/core/stress_rows.hpp"
 #include "particle/delaunay/network.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace concord::particle::delaunay {
-
-typedef double v8d __attribute__((vector_size(64)));
 
 /// Two vectors side by side: elastic and viscous, or displacement and velocity.
 template <int Dim> struct TwinOf;
@@ -20,24 +20,28 @@ template <> struct TwinOf<3> { using type = v8d; };
 template <int Dim> using Twin = typename TwinOf<Dim>::type;
 template <int Dim> inline constexpr std::size_t twin_size = 2 * Lanes<Dim>::stride;
 
-CONCORD_INLINE v4d twin(v2d a, v2d b) { return __builtin_shufflevector(a, b, 0, 1, 2, 3); }
-CONCORD_INLINE v8d twin(v4d a, v4d b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-}
 CONCORD_INLINE v2d low(v4d t) { return __builtin_shufflevector(t, t, 0, 1); }
 CONCORD_INLINE v2d high(v4d t) { return __builtin_shufflevector(t, t, 2, 3); }
 CONCORD_INLINE v4d low(v8d t) { return __builtin_shufflevector(t, t, 0, 1, 2, 3); }
 CONCORD_INLINE v4d high(v8d t) { return __builtin_shufflevector(t, t, 4, 5, 6, 7); }
-CONCORD_INLINE v4d spread(const double* s, v4d) { return broadcast(*s, v4d{}); }
-CONCORD_INLINE v8d spread(const double* s, v8d) {
-  const v4d half = broadcast(*s, v4d{});
-  return twin(half, half);
-}
 
 /// Doubles in a record of stresses: {P, J F^-T} column by column, then {f, f_visc}; padded to
 /// whole cache lines.
 template <int Dim> inline constexpr std::size_t stress_record = Dim == 3 ? 32 : 16;
 template <int Dim> inline constexpr std::size_t force_place = Dim* twin_size<Dim>;
+
+/// Where a bond's ends have their records in the rings: in doubles of a ring of stresses, in
+/// words of half the size of a ring of gradients, whose records are half as long. One number
+/// for both, because the processor scales an index by either.
+struct Places {
+  std::uint32_t a, b;
+};
+template <int Dim>
+CONCORD_INLINE double* record_at(const Window<Dim>& window, std::uint32_t place) {
+  static_assert(2 * record_size<Dim> == stress_record<Dim>);
+  char* const records = reinterpret_cast<char*>(window.records);
+  return reinterpret_cast<double*>(records + sizeof(double) / 2 * std::size_t{place});
+}
 
 /// Records of stresses in a ring, as Window.
 template <int Dim> struct StressWindow {
@@ -46,30 +50,46 @@ template <int Dim> struct StressWindow {
   CONCORD_INLINE double* at(Index a) const {
     return records + (static_cast<std::size_t>(a) & mask) * stress_record<Dim>;
   }
+  std::uint32_t place(Index a) const { return static_cast<std::uint32_t>(at(a) - records); }
 };
+template <int Dim>
+CONCORD_INLINE double* record_at(const StressWindow<Dim>& window, std::uint32_t place) {
+  return window.records + place;
+}
 
 /// What the loops read of some rows of a network.
 template <int Dim> struct SomeBonds {
   const Ends* ends;
+  const Places* places;
   const double* z;  ///< dim doubles a bond
   std::size_t count;
   const SkewBond<Dim>*skew, *skew_end;  ///< those of them that are skew
   Index first;                          ///< number of the first
 
-  SomeBonds(const Network& network, Index first_row, Index last_row) {
+  /// `skew_before`: how many of the skew bonds stand before the rows; moved to behind them.
+  SomeBonds(const Network& network, const std::vector<Places>& all_places, Index first_row,
+            Index last_row, std::size_t& skew_before) {
     const std::vector<Index>& begin = network.rows().begin;
     first = begin[first_row];
     count = static_cast<std::size_t>(begin[last_row] - first);
     ends = &network.ends(0) + first;
+    places = all_places.data() + first;
     z = network.rows().B.data() + static_cast<std::size_t>(first) * Dim;
     const auto& list = network.template skew<Dim>();
-    const auto before = [](const SkewBond<Dim>& one, Index k) { return one.bond < k; };
-    const auto low = std::lower_bound(list.begin(), list.end(), first, before),
-               high = std::lower_bound(low, list.end(), begin[last_row], before);
-    skew = list.data() + (low - list.begin());
-    skew_end = list.data() + (high - list.begin());
+    skew = list.data() + skew_before;
+    while (skew_before < list.size() && list[skew_before].bond < begin[last_row]) ++skew_before;
+    skew_end = list.data() + skew_before;
   }
 };
+
+/// How many skew bonds stand before a row.
+template <int Dim> std::size_t skew_before_row(const Network& network, Index row) {
+  const auto& list = network.template skew<Dim>();
+  const auto before = [](const SkewBond<Dim>& one, Index k) { return one.bond < k; };
+  return static_cast<std::size_t>(
+      std::lower_bound(list.begin(), list.end(), network.rows().begin[row], before) -
+      list.begin());
+}
 
 /// Records of [first, last) get a zero tensor, u and, in the plane, v behind it.
 template <int Dim>
@@ -79,28 +99,32 @@ CONCORD_CLONES void open_motion(Window<Dim> window, Index first, Index last, con
   for (Index a = first; a < last; ++a) {
     const auto at = static_cast<std::size_t>(a) * S;
     double* record = window.at(a);
-    for (int k = 0; k < Dim; ++k) store(record + k * S, Vec<Dim>{});
-    store(record + vector_place<Dim>, load<Vec<Dim>>(u + at));
-    if constexpr (Dim == 2) store(record + vector_place<Dim> + S, load<Vec<Dim>>(v + at));
+    for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k) store(record + 4 * k, v4d{});
+    const Vec<Dim> u_a = load<Vec<Dim>>(u + at);
+    if constexpr (Dim == 2)
+      store(record + vector_place<2>, twin(u_a, load<v2d>(v + at)));
+    else
+      store(record + vector_place<3>, u_a);
   }
 }
 
 /// Displacement and velocity of a particle whose record is open.
 template <int Dim>
-CONCORD_INLINE Twin<Dim> motion(const double* record, const double* v, std::size_t a) {
+CONCORD_INLINE Twin<Dim> motion(const double* record, const double* v, Index a) {
   if constexpr (Dim == 2)
     return load<v4d>(record + vector_place<2>);
   else
-    return twin(load<v4d>(record + vector_place<3>), load<v4d>(v + a * 4));
+    return twin(load<v4d>(record + vector_place<3>),
+                load<v4d>(v + static_cast<std::size_t>(a) * 4));
 }
 
-/// u (x) z, in as few registers as it fits: one in the plane.
+/// u (x) z, in as few registers as it fits: one in the plane. u is the first of two vectors.
 template <int Dim> struct Outer;
 template <> struct Outer<2> {
   v4d all;
-  CONCORD_INLINE Outer(v2d u, const double* z) {
+  CONCORD_INLINE Outer(v4d motion, const double* z) {
     const v2d vector = load<v2d>(z);
-    all = __builtin_shufflevector(u, u, 0, 1, 0, 1) *
+    all = __builtin_shufflevector(motion, motion, 0, 1, 0, 1) *
           __builtin_shufflevector(vector, vector, 0, 0, 1, 1);
   }
   CONCORD_INLINE void add_to(double* tensor) const { store(tensor, load<v4d>(tensor) + all); }
@@ -110,8 +134,8 @@ template <> struct Outer<2> {
 };
 template <> struct Outer<3> {
   v4d column[3];
-  CONCORD_INLINE Outer(v4d u, const double* z) {
-    for (int k = 0; k < 3; ++k) column[k] = u * broadcast(z[k], v4d{});
+  CONCORD_INLINE Outer(v8d motion, const double* z) {
+    for (int k = 0; k < 3; ++k) column[k] = low(motion) * broadcast(z[k], v4d{});
   }
   CONCORD_INLINE void add_to(double* tensor) const {
     for (int k = 0; k < 3; ++k) store(tensor + 4 * k, load<v4d>(tensor + 4 * k) + column[k]);
@@ -121,34 +145,108 @@ template <> struct Outer<3> {
   }
 };
 
-/// Omega_a H_a = sum_b u_ab (x) zeta_ab, which is (CBM.8) less the identity, and v_ab.x_ab and
-/// |x_ab|^2 of every bond into `measures`. One loop over all bonds, with both ends in memory:
-/// rows are so short in the plane that their ends would be guessed wrong every other time.
+/// Pressures and lengths of bonds: what is read and written of each.
+template <int Dim> struct BondPressures {
+  const double* X[Dim];        ///< components of X_ab
+  const double* limit;         ///< of |x_ab|^2; a bond that is not below it fails
+  double viscosity;            ///< beta l_c rho c_0 [Pa s]
+  double softening;            ///< .01 l_c^2
+  double *minus_pi, *lengths;  ///< aligned, written in whole fours
+};
+
+/// Of four bonds, one in each lane.
+template <int Dim> struct FourBonds {
+  v4d u[Dim], v[Dim], X[Dim];  ///< u_ab, v_ab, X_ab
+  v4d limit;
+
+  CONCORD_INLINE FourBonds(const Twin<Dim> (&motions)[4]) {
+    v4d row[4];
+    if constexpr (Dim == 2) {
+      for (int l = 0; l < 4; ++l) row[l] = motions[l];
+      transpose(row[0], row[1], row[2], row[3]);
+      u[0] = row[0], u[1] = row[1], v[0] = row[2], v[1] = row[3];
+    } else {
+      for (int l = 0; l < 4; ++l) row[l] = low(motions[l]);
+      transpose(row[0], row[1], row[2], row[3]);
+      for (int i = 0; i < 3; ++i) u[i] = row[i];
+      for (int l = 0; l < 4; ++l) row[l] = high(motions[l]);
+      transpose(row[0], row[1], row[2], row[3]);
+      for (int i = 0; i < 3; ++i) v[i] = row[i];
+    }
+  }
+
+  /// -pi_ab = viscosity v_ab.x_ab / (|x_ab|^2 + softening) (CBM.21), and |x_ab|^2. Returns
+  /// |x_ab|^2 - limit.
+  CONCORD_INLINE v4d press(const BondPressures<Dim>& p, std::size_t first) const {
+    v4d x2{}, vx{};
+    for (int i = 0; i < Dim; ++i) {
+      const v4d x = X[i] + u[i];
+      x2 += x * x;
+      vx += v[i] * x;
+    }
+    store(p.minus_pi + first, p.viscosity * vx / (x2 + p.softening));
+    store(p.lengths + first, x2);
+    return x2 - limit;
+  }
+};
+
+/// Adds a bond's part to the gradients of both ends; u_ba (x) zeta_ba is u_ab (x) zeta_ab.
+/// Returns {u_ab, v_ab}.
 template <int Dim>
-CONCORD_CLONES void breakable_gradients(const SomeBonds<Dim>& bonds, const double* X,
-                                        const double* v, Window<Dim> H, double* measures) {
-  constexpr std::size_t S = Lanes<Dim>::stride;
-  const Ends* ends = bonds.ends;
-  const double* z = bonds.z;
-  for (std::size_t k = 0; k < bonds.count; ++k, z += Dim) {
-    const auto a = static_cast<std::size_t>(ends[k].a), b = static_cast<std::size_t>(ends[k].b);
-    double *record_a = H.at(ends[k].a), *record_b = H.at(ends[k].b);
-    const Twin<Dim> motion_ab = motion<Dim>(record_b, v, b) - motion<Dim>(record_a, v, a);
-    const Vec<Dim> u_ab = low(motion_ab), v_ab = high(motion_ab);
-    const Outer<Dim> H_ab(u_ab, z);
-    H_ab.add_to(record_a);
-    H_ab.add_to(record_b);  // u_ba (x) zeta_ba
-    const Vec<Dim> x_ab = load<Vec<Dim>>(X + b * S) - load<Vec<Dim>>(X + a * S) + u_ab;
-    store(measures + 2 * k, lane_sums(v_ab * x_ab, x_ab * x_ab));
+CONCORD_INLINE Twin<Dim> add_to_gradients(const SomeBonds<Dim>& bonds, std::size_t k,
+                                          const double* v, Window<Dim> H) {
+  double *record_a = record_at(H, bonds.places[k].a),
+         *record_b = record_at(H, bonds.places[k].b);
+  const Twin<Dim> motion_ab =
+      motion<Dim>(record_b, v, bonds.ends[k].b) - motion<Dim>(record_a, v, bonds.ends[k].a);
+  const Outer<Dim> H_ab(motion_ab, bonds.z + k * Dim);
+  H_ab.add_to(record_a);
+  H_ab.add_to(record_b);
+  return motion_ab;
+}
+
+/// Omega_a H_a = sum_b u_ab (x) zeta_ab, which is (CBM.8) less the identity, and the pressures
+/// of the bonds. One loop over all bonds, with both ends in memory: rows are so short in the
+/// plane that their ends would be guessed wrong every other time. Returns the largest |x_ab|^2
+/// - limit, at least -1.
+template <int Dim>
+CONCORD_CLONES double breakable_gradients(const SomeBonds<Dim>& some, const double* v,
+                                          Window<Dim> H, const BondPressures<Dim>& to) {
+  const SomeBonds<Dim> bonds = some;  // copies, which no store can change
+  const BondPressures<Dim> pressures = to;
+  v4d most{-1, -1, -1, -1};
+  std::size_t k = 0;
+  for (; k + 4 <= bonds.count; k += 4) {
+    Twin<Dim> motions[4];
+    for (std::size_t l = 0; l < 4; ++l) motions[l] = add_to_gradients<Dim>(bonds, k + l, v, H);
+    FourBonds<Dim> four(motions);
+    for (int i = 0; i < Dim; ++i) four.X[i] = load_anywhere(pressures.X[i] + k);
+    four.limit = load_anywhere(pressures.limit + k);
+    const v4d excess = four.press(pressures, k);
+    most = excess > most ? excess : most;
+  }
+  if (k < bonds.count) {
+    Twin<Dim> motions[4] = {};
+    v4d X[Dim] = {}, limit{1, 1, 1, 1};
+    for (std::size_t l = 0; k + l < bonds.count; ++l) {
+      motions[l] = add_to_gradients<Dim>(bonds, k + l, v, H);
+      for (int i = 0; i < Dim; ++i) X[i][l] = pressures.X[i][k + l];
+      limit[l] = pressures.limit[k + l];
+    }
+    FourBonds<Dim> four(motions);
+    std::copy(X, X + Dim, four.X);
+    four.limit = limit;
+    const v4d excess = four.press(pressures, k);
+    most = excess > most ? excess : most;
   }
   for (const SkewBond<Dim>* bond = bonds.skew; bond != bonds.skew_end; ++bond) {
     double *record_a = H.at(bond->a), *record_b = H.at(bond->b);
-    const Outer<Dim> H_ab(load<Vec<Dim>>(record_b + vector_place<Dim>) -
-                              load<Vec<Dim>>(record_a + vector_place<Dim>),
+    const Outer<Dim> H_ab(motion<Dim>(record_b, v, bond->b) - motion<Dim>(record_a, v, bond->a),
                           bond->s);
     H_ab.add_to(record_a);
     H_ab.take_from(record_b);
   }
+  return std::max(std::max(most[0], most[1]), std::max(most[2], most[3]));
 }
 
 /// H_a of the particles [first, last), whose sums are complete.
@@ -161,23 +259,6 @@ CONCORD_CLONES void divide_by_omega(Index first, Index last, const double* inver
     for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k)
       store(record + 4 * k, load<v4d>(record + 4 * k) * w);
   }
-}
-
-/// -pi_ab = viscosity v_ab.x_ab / (|x_ab|^2 + softening) (CBM.21), with viscosity = beta l_c
-/// rho c_0 [Pa s] and softening = .01 l_c^2, of `count` bonds. Returns the largest |x_ab|^2 -
-/// limit; a bond whose difference is not below 0 fails.
-CONCORD_CLONES inline double bond_pressures(std::size_t count, double viscosity,
-                                            double softening, const double* __restrict limit,
-                                            const double* __restrict measures,
-                                            double* __restrict minus_pi) {
-  double excess = -1;
-#pragma omp simd reduction(max : excess)
-  for (std::size_t k = 0; k < count; ++k) {
-    const double x2 = measures[2 * k + 1];
-    minus_pi[k] = viscosity * measures[2 * k] / (x2 + softening);
-    excess = std::max(excess, x2 - limit[k]);
-  }
-  return excess;
 }
 
 /// cof F = J F^-T of F = I + H.
@@ -261,11 +342,18 @@ CONCORD_CLONES double bond_works(const SomeBonds<Dim>& bonds, const double* X, c
   return excess;
 }
 
+/// t with its second vector times s.
+CONCORD_INLINE v4d second_times(v4d t, double s) {
+  return __builtin_shufflevector(t, t * s, 0, 1, 6, 7);
+}
+CONCORD_INLINE v8d second_times(v8d t, double s) {
+  return __builtin_shufflevector(t, t * s, 0, 1, 2, 3, 12, 13, 14, 15);
+}
+
 /// Adds t to the force on a and takes it from that on b; the viscous half times -pi.
 template <int Dim>
 CONCORD_INLINE void add_pair(double* record_a, double* record_b, Twin<Dim> t, double minus_pi) {
-  const Vec<Dim> one = broadcast(1.0, Vec<Dim>{});
-  t *= twin(one, broadcast(minus_pi, Vec<Dim>{}));
+  t = second_times(t, minus_pi);
   double *f_a = record_a + force_place<Dim>, *f_b = record_b + force_place<Dim>;
   store(f_a, load<Twin<Dim>>(f_a) + t);
   store(f_b, load<Twin<Dim>>(f_b) - t);
@@ -278,24 +366,21 @@ template <int Dim>
 CONCORD_CLONES void breakable_forces(const SomeBonds<Dim>& bonds, const double* minus_pi,
                                      StressWindow<Dim> stresses) {
   constexpr std::size_t T = twin_size<Dim>;
-  const Ends* ends = bonds.ends;
+  const Places* places = bonds.places;
   const double* z = bonds.z;
   for (std::size_t k = 0; k < bonds.count; ++k, z += Dim) {
-    double *record_a = stresses.at(ends[k].a), *record_b = stresses.at(ends[k].b);
-    Twin<Dim> t =
-        (load<Twin<Dim>>(record_a) + load<Twin<Dim>>(record_b)) * spread(z, Twin<Dim>{});
-    for (int i = 1; i < Dim; ++i) {
-      t += (load<Twin<Dim>>(record_a + i * T) + load<Twin<Dim>>(record_b + i * T)) *
-           spread(z + i, Twin<Dim>{});
-    }
+    double *record_a = record_at(stresses, places[k].a),
+           *record_b = record_at(stresses, places[k].b);
+    Twin<Dim> t = (load<Twin<Dim>>(record_a) + load<Twin<Dim>>(record_b)) * z[0];
+    for (int i = 1; i < Dim; ++i)
+      t += (load<Twin<Dim>>(record_a + i * T) + load<Twin<Dim>>(record_b + i * T)) * z[i];
     add_pair<Dim>(record_a, record_b, t, minus_pi[k]);
   }
   for (const SkewBond<Dim>* bond = bonds.skew; bond != bonds.skew_end; ++bond) {
     double *record_a = stresses.at(bond->a), *record_b = stresses.at(bond->b);
     Twin<Dim> t{};
     for (int i = 0; i < Dim; ++i) {
-      t += (load<Twin<Dim>>(record_a + i * T) - load<Twin<Dim>>(record_b + i * T)) *
-           spread(bond->s + i, Twin<Dim>{});
+      t += (load<Twin<Dim>>(record_a + i * T) - load<Twin<Dim>>(record_b + i * T)) * bond->s[i];
     }
     add_pair<Dim>(record_a, record_b, t, minus_pi[bond->bond - bonds.first]);
   }

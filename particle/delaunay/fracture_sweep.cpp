@@ -22,9 +22,16 @@ template <int Dim> class SweepIn final : public FractureSweep {
     const std::vector<Index>& begin = network.rows().begin;
     for (Index a = 0; a < body.n; a += chunk)
       m_most = std::max<std::size_t>(m_most, begin[std::min(body.n, a + chunk)] - begin[a]);
-    m_measures.assign(2 * m_most, 0.0);
+    m_most = (m_most + 3) / 4 * 4;
+    m_lengths.assign(m_most, 0.0);
     m_minus_pi.assign(m_slots * m_most, 0.0);
-    m_works.assign(m_most, 0.0);
+    m_works.assign(law.by_energy ? m_most : 0, 0.0);
+    for (Index k = 0; k < static_cast<Index>(network.bonds()); ++k) {
+      const auto [a, b] = network.ends(k);
+      m_places.push_back({stresses().place(a), stresses().place(b)});
+      for (int i = 0; i < Dim; ++i)
+        m_X_ab[i].push_back(body.position(b)[i] - body.position(a)[i]);
+    }
   }
 
   Index forces(ParticleRange part, const double* u, const double* v, double* f, double* viscous,
@@ -33,12 +40,13 @@ template <int Dim> class SweepIn final : public FractureSweep {
     Index done = start_of_chunk(m_reach.bottom(part.first));
     m_stressed = m_opened_Q = m_contact ? start_of_chunk(m_reach.bottom(done)) : done;
     start_gradients(m_stressed);
+    std::size_t skew = skew_before_row<Dim>(m_network, done), skew_of_works = skew;
     for (; done < part.last; done = std::min(done + chunk, m_body.n)) {
       const Index end = std::min(done + chunk, m_body.n);
       stresses_to(m_reach.top(end));
-      if (m_law.by_energy && m_failed != nullptr) check_works(done, end);
-      breakable_forces<Dim>(SomeBonds<Dim>(m_network, done, end), pressures_of(done),
-                            stresses());
+      if (m_law.by_energy && m_failed != nullptr) check_works(done, end, skew_of_works);
+      breakable_forces<Dim>(SomeBonds<Dim>(m_network, m_places, done, end, skew),
+                            pressures_of(done), stresses());
       copy_forces<Dim>(stresses(), std::max(done, part.first), std::min(end, part.last), f,
                        viscous);
     }
@@ -74,6 +82,7 @@ template <int Dim> class SweepIn final : public FractureSweep {
 
   void start_gradients(Index first) {
     m_graded = m_opened_H = start_of_chunk(m_reach.bottom(first));
+    m_skew_graded = skew_before_row<Dim>(m_network, m_graded);
   }
 
   void gradients_to(Index last) {
@@ -84,33 +93,42 @@ template <int Dim> class SweepIn final : public FractureSweep {
         open_motion<Dim>(H(), m_opened_H, top, m_u, m_v);
         m_opened_H = top;
       }
-      breakable_gradients<Dim>(SomeBonds<Dim>(m_network, first, end), X(), m_v, H(),
-                               m_measures.data());
+      const double excess = breakable_gradients<Dim>(
+          SomeBonds<Dim>(m_network, m_places, first, end, m_skew_graded), m_v, H(),
+          pressures(first));
       divide_by_omega<Dim>(first, end, inverse_omega(), H());
-      check_stretches(first, end);
+      if (excess >= 0) find_failed(first, end);
       m_graded = end;
     }
   }
 
-  /// Pressures of the bonds of rows, and which bonds are too long.
-  void check_stretches(Index first, Index last) {
+  BondPressures<Dim> pressures(Index first_row) {
+    const Index first = m_network.rows().begin[first_row];
+    BondPressures<Dim> p;
+    for (int i = 0; i < Dim; ++i) p.X[i] = m_X_ab[i].data() + first;
+    p.limit = m_law.limit.data() + first;
+    p.viscosity = m_law.viscosity;
+    p.softening = m_law.softening;
+    p.minus_pi = pressures_of(first_row);
+    p.lengths = m_lengths.data();
+    return p;
+  }
+
+  /// Which bonds of rows are too long.
+  void find_failed(Index first, Index last) {
+    if (m_failed == nullptr || m_law.by_energy) return;
     const std::vector<Index>& begin = m_network.rows().begin;
-    const double* limit = m_law.limit.data() + begin[first];
-    const auto count = static_cast<std::size_t>(begin[last] - begin[first]);
-    const double excess = bond_pressures(count, m_law.viscosity, m_law.softening, limit,
-                                         m_measures.data(), pressures_of(first));
-    if (excess < 0 || m_failed == nullptr || m_law.by_energy) return;
-    for (std::size_t k = 0; k < count; ++k) {
-      if (m_measures[2 * k + 1] >= limit[k])
-        m_failed->push_back(begin[first] + static_cast<Index>(k));
+    for (Index k = begin[first]; k < begin[last]; ++k) {
+      if (m_lengths[k - begin[first]] >= m_law.limit[k]) m_failed->push_back(k);
     }
   }
 
-  void check_works(Index first, Index last) {
+  void check_works(Index first, Index last, std::size_t& skew) {
     const std::vector<Index>& begin = m_network.rows().begin;
     const double* limit = m_law.limit.data() + begin[first];
-    const double excess = bond_works<Dim>(SomeBonds<Dim>(m_network, first, last), X(), m_u,
-                                          stresses(), limit, m_works.data());
+    const double excess =
+        bond_works<Dim>(SomeBonds<Dim>(m_network, m_places, first, last, skew), X(), m_u,
+                        stresses(), limit, m_works.data());
     if (excess < 0) return;
     for (Index k = 0; k < begin[last] - begin[first]; ++k) {
       if (m_works[k] >= limit[k]) m_failed->push_back(begin[first] + k);
@@ -146,13 +164,16 @@ template <int Dim> class SweepIn final : public FractureSweep {
   Reach m_reach;
   std::size_t m_mask, m_slots, m_most = 0;
   ContactBuffer m_buffer;
-  Column m_H, m_Q, m_stresses;  ///< records of the windows
-  Column m_measures, m_works;   ///< of a chunk's bonds
-  Column m_minus_pi;            ///< of chunks between gradients and forces
+  std::vector<Places> m_places;     ///< of every bond
+  std::vector<double> m_X_ab[Dim];  ///< components of every bond
+  Column m_H, m_Q, m_stresses;      ///< records of the windows
+  Column m_lengths, m_works;        ///< of a chunk's bonds
+  Column m_minus_pi;                ///< of chunks between gradients and forces
   const double *m_u = nullptr, *m_v = nullptr;
   std::vector<Index>* m_failed = nullptr;
   Index m_graded = 0, m_stressed = 0;    ///< rows done
   Index m_opened_H = 0, m_opened_Q = 0;  ///< records that have been opened
+  std::size_t m_skew_graded = 0;         ///< skew bonds before the rows that are done
   Index m_bad = -1;
 };
 
