@@ -1,6 +1,7 @@
 #include "particle/delaunay/network.hpp"
 
 #include "particle/core/edges.hpp"
+#include "particle/core/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -256,13 +257,9 @@ Stencil Network::stencil(Index particle, std::span<const Index> without) const {
 }
 
 std::vector<Index> Network::crossing(const Vec3& from, const Vec3& to) const {
-  const auto left = [](const Vec3& p, const Vec3& q, const Vec3& x) {
-    return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]) >= 0;
-  };
   std::vector<Index> list;
   for (Index k = 0; k < static_cast<Index>(bonds()); ++k) {
-    const Vec3 a = m_body.position(m_ends[k].a), b = m_body.position(m_ends[k].b);
-    if (left(from, to, a) != left(from, to, b) && left(a, b, from) != left(a, b, to))
+    if (segments_cross(from, to, m_body.position(m_ends[k].a), m_body.position(m_ends[k].b)))
       list.push_back(k);
   }
   return list;

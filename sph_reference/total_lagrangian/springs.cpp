@@ -1,20 +1,12 @@
 #include "sph_reference/total_lagrangian/springs.hpp"
 
 #include "particle/core/edges.hpp"
+#include "particle/core/segments.hpp"
 
 #include <algorithm>
 
 namespace concord::sph {
 namespace {
-
-/// Whether the segments pq and ab of the plane cross; a point on the other's line lies to its
-/// left.
-bool cross(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
-  const auto left = [](const Vec3& from, const Vec3& to, const Vec3& x) {
-    return (to[0] - from[0]) * (x[1] - from[1]) - (to[1] - from[1]) * (x[0] - from[0]) >= 0;
-  };
-  return left(p, q, a) != left(p, q, b) && left(a, b, p) != left(a, b, q);
-}
 
 /// (a, position) and (b, position) of every pair a, b.
 template <class Ends> Lists incidence(Index particles, std::size_t count, const Ends& ends) {
@@ -170,7 +162,8 @@ std::vector<Index> Springs::break_up(std::span<const Index> springs,
 std::vector<Index> Springs::springs_across(const Vec3& from, const Vec3& to) const {
   std::vector<Index> list;
   for (Index k = 0; k < count(); ++k) {
-    if (cross(from, to, m_body.position(m_first[k]), m_body.position(m_second[k])))
+    if (particle::segments_cross(from, to, m_body.position(m_first[k]),
+                                 m_body.position(m_second[k])))
       list.push_back(k);
   }
   return list;
@@ -179,7 +172,8 @@ std::vector<Index> Springs::springs_across(const Vec3& from, const Vec3& to) con
 std::vector<Index> Springs::pairs_across(const Vec3& from, const Vec3& to) const {
   std::vector<Index> list;
   for (Index p = 0; p < static_cast<Index>(m_pairs.size()); ++p) {
-    if (cross(from, to, m_body.position(m_pairs[p].a), m_body.position(m_pairs[p].b)))
+    if (particle::segments_cross(from, to, m_body.position(m_pairs[p].a),
+                                 m_body.position(m_pairs[p].b)))
       list.push_back(p);
   }
   return list;

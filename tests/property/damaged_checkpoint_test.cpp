@@ -42,8 +42,9 @@ template <class Edit> void edit(const fs::path& file, const Edit& change) {
   const std::uint64_t sum = scene::crc64_of(bytes);
   bytes += tag;
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-  std::ofstream(file, std::ios::binary) << bytes;
   fs::remove(plain);
+  fs::remove(file);  // to write over it would wait for the disk
+  std::ofstream(file, std::ios::binary) << bytes;
 }
 
 std::vector<std::string> items(hid_t file) {

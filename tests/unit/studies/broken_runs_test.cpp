@@ -12,6 +12,16 @@ namespace {
 
 class BrokenRuns : public ResumedProgram {
  protected:
+  /// In memory, where there is such a folder: a checkpoint a row waits long for a disk.
+  void SetUp() override {
+    ResumedProgram::SetUp();
+    if (::access("/dev/shm", W_OK | X_OK) != 0) return;
+    fs::remove_all(m_work);
+    m_work = fs::path("/dev/shm") / m_work.filename();
+    fs::remove_all(m_work);
+    fs::create_directories(m_work);
+  }
+
   /// As someone would who knows no more than what is in the folder.
   pid_t start_or_resume(const std::string& run, const std::string& folder, int threads) {
     const std::string with = " --checkpoint 0 --threads " + std::to_string(threads);
@@ -143,7 +153,7 @@ TEST_F(BrokenRuns, ACheckpointBesideACompleteRunIsLeftOver) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   kill(again, SIGKILL);
   ASSERT_EQ(finish(again).code, -SIGKILL);
-  const Ended resumed = run("run --resume parts");
+  const Ended resumed = run("run --resume parts --checkpoint 30");
   EXPECT_EQ(resumed.code, 0) << "the summary of the complete run is gone: " << resumed.err;
 }
 
@@ -154,7 +164,7 @@ TEST_F(BrokenRuns, AnotherProgramGoesOnAndSaysSo) {
   const fs::path lib = fs::path(CONCORD_PROGRAM).parent_path().parent_path() / "lib";
   for (const fs::directory_entry& entry : fs::directory_iterator(lib)) {
     const std::string name = entry.path().filename().string();
-    if (name.rfind("libconcord_scene.so", 0) == 0) fs::copy(entry.path(), m_work / name);
+    if (name.find(".so") != std::string::npos) fs::copy(entry.path(), m_work / name);
   }
   write("concord_commit.txt", "0123456789\n");
   const Ended ended = run("run --resume parts", "LD_LIBRARY_PATH='" + m_work.string() + "'");
