@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from . import cache, films, frames, voronoi_cells
@@ -272,22 +273,25 @@ def _finished(data):
 
 
 def _render(wanted, store, warnings):
-    """Plane bodies with matplotlib, others with VTK under xvfb-run; with matplotlib alone, as a
-    scatter plot, where that is not to be had."""
+    """Plane bodies with matplotlib, beside them others with VTK under xvfb-run; with matplotlib
+    alone, as a scatter plot, where that is not to be had."""
     plane = {k: j for k, j in wanted.items() if "long" in j}
     solid = {k: j for k, j in wanted.items() if "long" not in j}
-    if plane:
-        _attempts(plane, [("plane", [])], store, warnings)
-    if solid:
-        ways = [("scatter", [])]
-        if shutil.which("xvfb-run"):
-            ways.insert(0, ("vtk", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24"]))
-        else:
-            warnings.append("xvfb-run is missing: field pictures are plain scatter plots")
-        _attempts(solid, ways, store, warnings)
+    ways = [("scatter", [])]
+    if shutil.which("xvfb-run"):
+        ways.insert(0, ("vtk", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24"]))
+    elif solid:
+        warnings.append("xvfb-run is missing: field pictures are plain scatter plots")
+    with ThreadPoolExecutor() as beside:
+        drawn = [beside.submit(_attempts, jobs, how, store)
+                 for jobs, how in ((plane, [("plane", [])]), (solid, ways)) if jobs]
+    for failures in drawn:
+        warnings += failures.result()
 
 
-def _attempts(wanted, ways, store, warnings):
+def _attempts(wanted, ways, store):
+    """Draws with the first of the ways that succeeds; returns warnings about those that did not."""
+    warnings = []
     script = Path(__file__).with_name("render.py")
     with tempfile.TemporaryDirectory() as folder:
         todo = Path(folder) / "jobs.json"
@@ -297,9 +301,10 @@ def _attempts(wanted, ways, store, warnings):
             done = subprocess.run([*before, sys.executable, str(script), str(todo), way], capture_output=True,
                                   text=True, env=env, check=False)
             if done.returncode == 0:
-                return
+                break
             last = (done.stderr or done.stdout).strip().splitlines() or [f"status {done.returncode}"]
             warnings.append(f"pictures with {way} failed: {last[-1]}")
+    return warnings
 
 
 def data_uri(job):
