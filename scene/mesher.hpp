@@ -1,7 +1,7 @@
 #pragma once
-// gmsh brings some eighty libraries, which cost a program a quarter of a second at its start. So
-// the sources that call it (scene/mesher) are a module, libconcord_mesher.so beside the scene's
-// library, which the first mesh of a process loads.
+// gmsh brings some eighty libraries, which cost a program a quarter of a second at its start.
+// So the sources that call it (scene/mesher) are a module, libconcord_mesher.so beside the
+// scene's library, which the first mesh of a process loads.
 
 #include "scene/geometry.hpp"
 

@@ -1,5 +1,7 @@
 #include "scene/norms.hpp"
 
+#include "scene/exact_samples.hpp"
+
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
@@ -50,16 +52,15 @@ void add_sample_errors(const Problem& problem, Result& result) {
 }
 
 void add_common_errors(const Problem& problem, Result& result) {
-  const Quadrature rule = common_quadrature(problem);
+  const ExactSamples exact = exact_samples(problem, result.t_end);
+  const Quadrature& rule = exact.rule;
   std::vector<Vec3> u(rule.points.size());
   std::vector<Mat3> gradient(rule.points.size());
   result.field->evaluate(rule.points, u, gradient);
   RelativeNorm displacement, G;
   for (std::size_t q = 0; q < rule.points.size(); ++q) {
-    displacement.add(rule.weights[q], u[q],
-                     (*problem.exact_displacement)(rule.points[q], result.t_end));
-    G.add(rule.weights[q], in_plane(gradient[q], problem.dim()),
-          problem.exact_gradient(rule.points[q], result.t_end));
+    displacement.add(rule.weights[q], u[q], exact.u[q]);
+    G.add(rule.weights[q], in_plane(gradient[q], problem.dim()), exact.gradient[q]);
   }
   result.errors["displacement_l2_common"] = displacement.value();
   result.errors["gradient_l2_common"] = G.value();

@@ -1,12 +1,18 @@
+#include "scene/exact_samples.hpp"
 #include "scene/norms.hpp"
 #include "scene/reader.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 using namespace concord;
 using namespace concord::scene;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -59,6 +65,55 @@ TEST(Norms, ScaledSolutionHasTheScaleAsError) {
   EXPECT_NEAR(r.errors.at("gradient_l2_common"), 0.01, 1e-10);
   EXPECT_NEAR(field_difference(p, *r.field, Scaled(p, 1)), 0.01, 1e-12);
   EXPECT_GT(r.errors.at("displacement_max"), 0);
+}
+
+class KeptSamples : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(m_folder);
+    setenv("CONCORD_CACHE", m_folder.c_str(), 1);
+  }
+  void TearDown() override {
+    unsetenv("CONCORD_CACHE");
+    fs::remove_all(m_folder);
+  }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> found;
+    for (const auto& file : fs::directory_iterator(m_folder / "exact"))
+      found.push_back(file.path());
+    return found;
+  }
+  static void expect_same(const ExactSamples& a, const ExactSamples& b) {
+    EXPECT_EQ(a.rule.points, b.rule.points);
+    EXPECT_EQ(a.rule.weights, b.rule.weights);
+    EXPECT_EQ(a.u, b.u);
+    EXPECT_EQ(a.gradient, b.gradient);
+  }
+
+  fs::path m_folder =
+      fs::path(testing::TempDir()) / ("concord-exact-" + std::to_string(::getpid()));
+};
+
+TEST_F(KeptSamples, HaveTheBitsOfComputedOnes) {
+  const Problem p = read_problem("vortex");
+  unsetenv("CONCORD_CACHE");
+  const ExactSamples computed = exact_samples(p, p.end_time);
+  ASSERT_GT(computed.u.size(), 100u);
+  setenv("CONCORD_CACHE", m_folder.c_str(), 1);
+  expect_same(exact_samples(p, p.end_time), computed);
+  ASSERT_EQ(files().size(), 1u);
+  const auto written = fs::last_write_time(files()[0]);
+  expect_same(exact_samples(p, p.end_time), computed);
+  EXPECT_EQ(fs::last_write_time(files()[0]), written) << "read, not written again";
+
+  std::fstream damage(files()[0], std::ios::in | std::ios::out | std::ios::binary);
+  damage.seekp(-8, std::ios::end);
+  damage.put('!');
+  damage.close();
+  expect_same(exact_samples(p, p.end_time), computed);
+
+  exact_samples(p, 0.5 * p.end_time);
+  EXPECT_EQ(files().size(), 2u) << "another time is another file";
 }
 
 TEST(Norms, NothingWithoutAnExactSolution) {
