@@ -22,6 +22,25 @@ namespace concord::studies {
 namespace fs = std::filesystem;
 namespace {
 
+/// Takes the cache out of the environment, if `wanted`, and gives it back.
+class WithoutCache {
+ public:
+  explicit WithoutCache(bool wanted) {
+    const char* folder = std::getenv("CONCORD_CACHE");
+    if (wanted && folder != nullptr) m_folder = folder;
+    begin();
+  }
+  void begin() const {
+    if (m_folder) ::unsetenv("CONCORD_CACHE");
+  }
+  void end() const {
+    if (m_folder) ::setenv("CONCORD_CACHE", m_folder->c_str(), 1);
+  }
+
+ private:
+  std::optional<std::string> m_folder;
+};
+
 void print_map(const char* title, const std::map<std::string, double>& values) {
   for (const auto& [name, value] : values) {
     fmt::print("  {:<11} {:<28} {:.6g}\n", title, name, value);
@@ -148,12 +167,14 @@ int run_command(const RunOptions& asked) {
   };
   scene::Result result;
   result.threads = options.threads;
-  if (options.repeats > 0) ::unsetenv("CONCORD_CACHE");  // set-up is timed: bodies are made
+  const WithoutCache no_cache(options.repeats > 0);  // set-up is timed: bodies are made
   const MemoryUse memory;
   try {
     run_kept(method, problem, request, options, result);
     const double bytes_per_particle = memory.bytes_per_particle(result.particles);
+    no_cache.end();
     scene::add_exact_errors(problem, result);
+    no_cache.begin();
     // The run itself was the warm-up where there are repeats.
     const Timings timings = time_runs(method, problem, request, options.repeats);
     progress.finish();
