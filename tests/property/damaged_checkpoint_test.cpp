@@ -199,6 +199,7 @@ TEST_P(DamagedCheckpoint, IsBadInputOrFailsInItsNumerics) {
   for (const std::string& name : names) {
     for (const Change change : changes) {
       if (begins(name, "fact.") && change != Change::gone) continue;
+      if (begins(name, "account.") && change != Change::not_a_number) continue;  // sums
       SCOPED_TRACE(name + ", change " + std::to_string(static_cast<int>(change)));
       const std::optional<End> end =
           with_changed(variant, whole, scratch / "part", name, change);
