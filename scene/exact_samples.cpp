@@ -7,6 +7,7 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fmt/format.h>
@@ -15,6 +16,8 @@ namespace concord::scene {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::uintmax_t most_bytes =
+    500'000'000;                   // of all samples kept: some thirty bodies in space
 constexpr std::size_t width = 16;  // doubles a point: X, weight, u, gradient
 
 std::vector<char> whole(const fs::path& file) { return read_bytes(file, fs::file_size(file)); }
@@ -84,6 +87,21 @@ std::vector<double> read(const fs::path& file, const std::string& identity) {
   return crc64_of(values) == sum ? values : std::vector<double>();
 }
 
+/// Removes the oldest files of a folder until the others are within most_bytes.
+void make_room(const fs::path& folder) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  std::error_code gone;  // another process may do the same
+  for (const auto& file : fs::directory_iterator(folder))
+    files.emplace_back(file.last_write_time(gone), file.path());
+  std::sort(files.rbegin(), files.rend());  // newest first
+  std::uintmax_t bytes = 0;
+  for (const auto& [time, file] : files) {
+    const std::uintmax_t size = fs::file_size(file, gone);
+    if (!gone) bytes += size;
+    if (bytes > most_bytes) fs::remove(file, gone);
+  }
+}
+
 void keep(const fs::path& file, const std::string& identity, const ExactSamples& s) {
   const std::vector<double> values = pack(s);
   const std::uint64_t sum = crc64_of(values);
@@ -93,6 +111,7 @@ void keep(const fs::path& file, const std::string& identity, const ExactSamples&
                {reinterpret_cast<const char*>(&sum), sizeof sum},
                {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)}},
               Reach::system);
+  make_room(file.parent_path());
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ struct ExactSamples {
 };
 
 /// At time t [s]. With $CONCORD_CACHE kept in its folder `exact`, by the problem's text, t, the
-/// scene library and gmsh: what is read from there has the bits of what was computed. The
-/// problem needs an exact solution.
+/// scene library and gmsh, 500 MB at most, the newest: what is read from there has the bits of
+/// what was computed. The problem needs an exact solution.
 ExactSamples exact_samples(const Problem& problem, double t);
 
 }  // namespace concord::scene
