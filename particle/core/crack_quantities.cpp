@@ -159,7 +159,8 @@ std::map<std::string, double> CrackQuantities::quantities() {
   std::map<std::string, double> q{{"broken_bonds", static_cast<double>(record.broken.size())},
                                   {"dead_area", m_area},
                                   {"fragments", static_cast<double>(parts.pieces)},
-                                  {"isolated_particles", static_cast<double>(parts.isolated)}};
+                                  {"isolated_particles", static_cast<double>(parts.isolated)},
+                                  {"flat_simplices", static_cast<double>(record.flat)}};
   if (m_arrival) q["crack_arrival"] = *m_arrival;
   if (!m_start) return q;
   const CrackPaths paths = crack_paths(m_body, *m_start, record.dead, shortest_branch * m_l);

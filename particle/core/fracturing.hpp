@@ -54,6 +54,10 @@ class Fracturing {
   /// it was asked last; omega 0: of a model that does not tell.
   virtual FrequencyBound stiffened([[maybe_unused]] std::span<const double> u) { return {}; }
 
+  /// The largest rate of damping about the present state [1/s], as the integrator has found it
+  /// (SpectralRadius::damping_max): ForceModel::viscous_damping_ratio() goes by it from now on.
+  virtual void set_damping([[maybe_unused]] double rate) {}
+
   /// The viscous part of the forces that the last advance() gave [N]; empty without viscosity.
   virtual std::span<const double> viscous_forces() const = 0;
 

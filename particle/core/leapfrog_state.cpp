@@ -9,10 +9,14 @@ namespace concord::particle {
 double Leapfrog::critical_step(double dt_factor) {
   SpectralRadius spectrum(m_model, m_constraints, m_executor);
   const double omega = spectrum.omega_max(m_u);
+  if (m_fracturing != nullptr && m_model.viscous())
+    m_fracturing->set_damping(spectrum.damping_max(m_u));
   return omega > 0 ? step_for(omega, dt_factor) : m_problem.end_time;
 }
 
-/// A share of the critical step at a frequency.
+/// A share of the critical step at a frequency. With viscous forces of the velocity half a step
+/// before, dt^2 K + 2 dt C < 4 M: omega and 2 zeta omega, the largest of either matrix by
+/// itself, give a step that is never too long.
 double Leapfrog::step_for(double omega, double dt_factor) const {
   const double zeta = m_model.viscous_damping_ratio(omega);
   return dt_factor * 2 / omega * (std::sqrt(1 + zeta * zeta) - zeta);

@@ -54,7 +54,8 @@ Column SpectralRadius::start() const {
   return w;
 }
 
-void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& result) {
+/// Largest |w|/sqrt(m) of any component.
+double SpectralRadius::largest_per_root(const Column& w) const {
   const Body& body = m_model.body();
   const auto stride = static_cast<std::size_t>(body.stride);
   std::vector<double> largest_of(Executor::pieces(m_root.size()), 0.0);
@@ -65,9 +66,14 @@ void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& r
         largest = std::max(largest, std::abs(w[a * stride + i]) / m_root[a]);
     }
   });
-  const double largest = *std::max_element(largest_of.begin(), largest_of.end());
-  const double epsilon =
-      1e-6 * body.h_min / largest;  // displacements of 1e-6 spacings: error about 1e-8 relative
+  return *std::max_element(largest_of.begin(), largest_of.end());
+}
+
+void SpectralRadius::apply_stiffness(std::span<const double> u, const Column& w,
+                                     Column& result) {
+  const auto stride = static_cast<std::size_t>(m_model.body().stride);
+  // Displacements of 1e-6 spacings: error about 1e-8 relative.
+  const double epsilon = 1e-6 * m_model.body().h_min / largest_per_root(w);
   for (const double sign : {1.0, -1.0}) {
     m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin * stride; k < end * stride; ++k)
@@ -84,12 +90,54 @@ void SpectralRadius::apply(std::span<const double> u, const Column& w, Column& r
   m_constraints.clear(result);
 }
 
+/// Half of the difference of the forces at velocities w/sqrt(m) and -w/sqrt(m).
+void SpectralRadius::apply_damping(std::span<const double> u, const Column& w, Column& result) {
+  const auto stride = static_cast<std::size_t>(m_model.body().stride);
+  for (const double sign : {1.0, -1.0}) {
+    m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin * stride; k < end * stride; ++k)
+        m_velocity[k] = sign * w[k] / m_root[k / stride];
+    });
+    m_model.forces(u, m_velocity, m_force, m_executor);
+    m_executor.for_pieces(m_root.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin * stride; k < end * stride; ++k)
+        result[k] = (sign > 0 ? 0.0 : result[k]) - 0.5 * sign * m_force[k] / m_root[k / stride];
+    });
+  }
+  m_constraints.clear(result);
+}
+
 double SpectralRadius::omega_max(std::span<const double> u, double tolerance, int most) {
   const ElasticResponse elastic(m_model);
   const std::size_t size = u.size();
   m_shifted.assign(size, 0.0);
   m_force.assign(size, 0.0);
   m_velocity.assign(m_model.viscous() ? size : 0, 0.0);  // else not read
+  const Apply apply = [&](const Column& w, Column& result) { apply_stiffness(u, w, result); };
+  return std::sqrt(std::max(0.0, largest_eigenvalue(size, apply, tolerance, most)));
+}
+
+/// Power iteration: C is not quite symmetric, and Lanczos' three terms do not forgive that.
+double SpectralRadius::damping_max(std::span<const double> u, double tolerance, int most) {
+  m_force.assign(u.size(), 0.0);
+  m_velocity.assign(u.size(), 0.0);
+  Column current = start(), next(u.size(), 0.0);
+  m_constraints.clear(current);
+  std::vector<double> estimates;
+  for (int it = 0; it < most; ++it) {
+    const double norm = std::sqrt(dot(current, current, m_executor));
+    if (norm == 0) return 0;
+    scale(current, 1 / norm);
+    apply_damping(u, current, next);
+    estimates.push_back(std::sqrt(dot(next, next, m_executor)));
+    if (it >= 8 && estimates.back() - estimates[it - 5] < tolerance * estimates.back()) break;
+    std::swap(current, next);
+  }
+  return estimates.back();
+}
+
+double SpectralRadius::largest_eigenvalue(std::size_t size, const Apply& apply,
+                                          double tolerance, int most) {
   Column previous(size, 0.0), current = start(), next(size, 0.0);
   m_constraints.clear(current);
   const double norm = std::sqrt(dot(current, current, m_executor));
@@ -97,7 +145,7 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
   scale(current, 1 / norm);
   std::vector<double> diagonal, off_diagonal, estimates;
   for (int it = 0; it < most; ++it) {
-    apply(u, current, next);
+    apply(current, next);
     const double alpha = dot(current, next, m_executor);
     const double beta_before = off_diagonal.empty() ? 0.0 : off_diagonal.back();
     m_executor.for_pieces(size, [&](std::size_t begin, std::size_t end) {
@@ -121,7 +169,7 @@ double SpectralRadius::omega_max(std::span<const double> u, double tolerance, in
     current = next;
     scale(current, 1 / beta);
   }
-  return std::sqrt(std::max(0.0, estimates.back()));
+  return estimates.back();
 }
 
 }  // namespace concord::particle

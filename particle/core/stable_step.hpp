@@ -4,6 +4,8 @@
 #include "particle/core/boundary.hpp"
 #include "particle/core/force_model.hpp"
 
+#include <functional>
+
 namespace concord::particle {
 
 /// Largest angular frequency of the free particles about the current displacement, by Lanczos
@@ -19,9 +21,18 @@ class SpectralRadius {
   /// iterations (two force evaluations each).
   double omega_max(std::span<const double> u, double tolerance = 2e-3, int most = 60);
 
+  /// Largest eigenvalue [1/s] of M^-1 C at displacement u, C = -df/dv at v = 0, found likewise:
+  /// the damping of a mode with ratio zeta and frequency omega is 2 zeta omega. For models
+  /// whose forces are linear in the velocity. C need only be nearly symmetric.
+  double damping_max(std::span<const double> u, double tolerance = 2e-3, int most = 60);
+
  private:
+  using Apply = std::function<void(const Column& w, Column& result)>;
+  double largest_eigenvalue(std::size_t size, const Apply& apply, double tolerance, int most);
   Column start() const;  ///< the same random vector for every number of threads
-  void apply(std::span<const double> u, const Column& w, Column& result);
+  void apply_stiffness(std::span<const double> u, const Column& w, Column& result);
+  void apply_damping(std::span<const double> u, const Column& w, Column& result);
+  double largest_per_root(const Column& w) const;
 
   ForceModel& m_model;
   const Constraints& m_constraints;

@@ -37,6 +37,7 @@ class FractureModel final : public ForceModel, public Fracturing {
 
   void advance(double t, double dt, std::span<const double> u, std::span<const double> v,
                std::span<double> f, const Executor& executor) override;
+  void set_damping(double rate) override { m_damping = rate; }
   void take_back() override;
   FrequencyBound stiffened(std::span<const double> u) override;
   std::span<const double> viscous_forces() const override { return m_kept_viscous; }
@@ -81,10 +82,11 @@ class FractureModel final : public ForceModel, public Fracturing {
   double held_by_particle(Index particle, const Step& step, At at) const;
   double held_by_contact(Index bond, const Step& step, At at) const;
 
-  double m_l;         ///< l_c [m]
-  double m_density;   ///< G_f/l_c [J/m^3]
-  double m_critical;  ///< eps_crit
-  double m_flatness;  ///< of (DEL.8)
+  double m_l;            ///< l_c [m]
+  double m_density;      ///< G_f/l_c [J/m^3]
+  double m_critical;     ///< eps_crit
+  double m_damping = 0;  ///< largest rate of damping [1/s]; 0: not known
+  double m_flatness;     ///< of (DEL.8)
   Network m_network;
   BreakingLaw m_law;
   std::unique_ptr<FractureSweep> m_sweep;

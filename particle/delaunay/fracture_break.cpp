@@ -124,6 +124,7 @@ std::vector<Index> FractureModel::break_bonds(const std::vector<Index>& bonds,
     m_record.broken.push_back({step.t, m_network.ends(k).a, m_network.ends(k).b});
   remove(bonds, simplices, step.t);
   m_record.released -= held_energy(touched, step, At::end);
+  if (!(step.dt > 0)) m_touched.clear();  // the first step is chosen after it
   return touched;
 }
 
