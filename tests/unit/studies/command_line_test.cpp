@@ -188,7 +188,14 @@ TEST_F(Program, CtrlCInAStudyStopsItsRunsAndKeepsTheFinished) {
       "[[case]]\nscene = \"swinging_cube\"\nmethod = \"delaunay\"\nresolutions = [2]\n" +
       claim("max = 1"));
   const pid_t child = start("study s --out o --threads 2", environment);
-  for (int i = 0; i < 600 && !fs::exists(m_work / "cache"); ++i)  // the short run is stored
+  const auto stored = [&] {  // the short run
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(m_work / "cache", none)) {
+      if (fs::exists(entry.path() / "entry.json")) return true;
+    }
+    return false;
+  };
+  for (int i = 0; i < 600 && !stored(); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   kill(child, SIGINT);
