@@ -101,6 +101,10 @@ TEST(FragmentSteps, AStepThatFailsTakesNothingWithIt) {
   const FractureRecord before = model.record();
   ASSERT_THROW(model.advance(5, 1e-5, u, still, f, Executor(1)), BadState);
   EXPECT_EQ(model.record().dead.size(), before.dead.size());
+  break_some(model, body, 1);  // a step that the integrator undoes later
+  ASSERT_GT(model.record().dead.size(), before.dead.size());
+  model.take_back();
+  EXPECT_EQ(model.record().dead.size(), before.dead.size());
   EXPECT_EQ(model.record().broken.size(), before.broken.size());
   EXPECT_EQ(model.record().released, before.released);
   EXPECT_EQ(model.network().omega(), other.network().omega());
