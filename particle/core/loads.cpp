@@ -1,4 +1,5 @@
 #include "particle/core/boundary.hpp"
+#include "particle/core/sorted.hpp"
 
 #include <Eigen/Geometry>
 
@@ -165,8 +166,7 @@ std::vector<Index> ExternalLoads::varying_particles() const {
   }
   for (const Entry& e : m_varying) particles.push_back(e.particle);
   for (const LoadTerm& term : m_terms) particles.push_back(term.point);
-  std::sort(particles.begin(), particles.end());
-  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
+  sort_unique(particles);
   return particles;
 }
 

@@ -2,21 +2,14 @@
 
 #include "particle/delaunay/fracture.hpp"
 
+#include "particle/core/sorted.hpp"
+
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 
 namespace concord::particle::delaunay {
-namespace {
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-}  // namespace
-
 /// Where bonds fail, or a fragment is turned inside out, the forces near them are computed once
 /// more. A step that cannot be taken leaves everything as it was before.
 void FractureModel::advance(double t, double dt, std::span<const double> u,

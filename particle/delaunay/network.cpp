@@ -2,6 +2,7 @@
 
 #include "particle/core/edges.hpp"
 #include "particle/core/segments.hpp"
+#include "particle/core/sorted.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,11 +21,6 @@ void make_rows(std::size_t rows, const std::vector<Pair>& pairs, std::vector<Ind
   values.resize(pairs.size());
   std::vector<Index> next(begin.begin(), begin.end() - 1);
   for (const auto& [row, value] : pairs) values[next[row]++] = value;
-}
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 constexpr int edges_of_simplex(int dim) { return dim * (dim + 1) / 2; }

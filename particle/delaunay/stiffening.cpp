@@ -1,5 +1,7 @@
 #include "particle/delaunay/stiffening.hpp"
 
+#include "particle/core/sorted.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -8,11 +10,6 @@
 
 namespace concord::particle::delaunay {
 namespace {
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
 
 template <class Matrix> double largest_eigenvalue(const Matrix& A) {
   return Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly)

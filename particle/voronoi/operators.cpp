@@ -1,5 +1,7 @@
 #include "particle/voronoi/operators.hpp"
 
+#include "particle/core/sorted.hpp"
+
 #include <algorithm>
 
 namespace concord::particle::voronoi {
@@ -236,26 +238,22 @@ Operators::Matrix Operators::pattern() const {
   const Index n = body().n;
   const int dim = body().dim;
   std::vector<std::vector<Index>> seen(n);
-  const auto compress = [](std::vector<Index>& list) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   for (Index p = 0; p < n; ++p) seen[p].push_back(p);
   std::vector<std::size_t> compressed(n, 64);
   for_each_element([&]<int M>(const Element<M>& element, const auto&) {
     std::vector<Index> members = element.trial.point;
     members.insert(members.end(), element.test.point.begin(), element.test.point.end());
-    compress(members);
+    sort_unique(members);
     for (const Index p : members) {
       seen[p].insert(seen[p].end(), members.begin(), members.end());
       if (seen[p].size() < 4 * compressed[p]) continue;
-      compress(seen[p]);
+      sort_unique(seen[p]);
       compressed[p] = std::max<std::size_t>(64, seen[p].size());
     }
   });
   std::vector<int> outer{0}, inner;
   for (Index p = 0; p < n; ++p) {
-    compress(seen[p]);
+    sort_unique(seen[p]);
     for (int i = 0; i < dim; ++i) {
       for (const Index q : seen[p]) {
         for (int k = 0; k < dim; ++k) inner.push_back(q * dim + k);

@@ -1,6 +1,7 @@
 #include "sph_reference/total_lagrangian/fracture.hpp"
 
 #include "particle/core/checkpoint.hpp"
+#include "particle/core/sorted.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,11 +38,6 @@ CONCORD_CLONES Index count_long(std::size_t begin, std::size_t end, const Index*
     count += square >= limit[k] ? 1 : 0;
   }
   return count;
-}
-
-void sort_unique(std::vector<Index>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 }  // namespace
@@ -165,7 +161,7 @@ void FracturingSph::break_springs(std::vector<Index> springs, std::vector<Index>
     std::vector<Index> touched;
     for (const Index p : going)
       touched.insert(touched.end(), {m_springs.pair(p).a, m_springs.pair(p).b});
-    sort_unique(touched);
+    particle::sort_unique(touched);
     m_record.released += held_energy(touched, step);
     for (const Index p : going) {
       for (const std::size_t entry : m_springs.pair(p).entry) {
@@ -182,7 +178,7 @@ void FracturingSph::break_springs(std::vector<Index> springs, std::vector<Index>
         if (m_springs.holds(p)) pairs.push_back(p);
       }
     }
-    sort_unique(springs), sort_unique(pairs);
+    particle::sort_unique(springs), particle::sort_unique(pairs);
     m_record.released -= held_energy(touched, step);
   }
 }

@@ -22,20 +22,20 @@ namespace concord::studies {
 namespace fs = std::filesystem;
 namespace {
 
-/// Takes the cache out of the environment, if `wanted`, and gives it back.
+/// While it lives the cache is out of the environment, if `wanted`.
 class WithoutCache {
  public:
   explicit WithoutCache(bool wanted) {
     const char* folder = std::getenv("CONCORD_CACHE");
-    if (wanted && folder != nullptr) m_folder = folder;
-    begin();
+    if (!wanted || folder == nullptr) return;
+    m_folder = folder;
+    ::unsetenv("CONCORD_CACHE");
   }
-  void begin() const {
-    if (m_folder) ::unsetenv("CONCORD_CACHE");
-  }
-  void end() const {
+  ~WithoutCache() {
     if (m_folder) ::setenv("CONCORD_CACHE", m_folder->c_str(), 1);
   }
+  WithoutCache(const WithoutCache&) = delete;
+  WithoutCache& operator=(const WithoutCache&) = delete;
 
  private:
   std::optional<std::string> m_folder;
@@ -167,16 +167,20 @@ int run_command(const RunOptions& asked) {
   };
   scene::Result result;
   result.threads = options.threads;
-  const WithoutCache no_cache(options.repeats > 0);  // set-up is timed: bodies are made
+  const bool timed = options.repeats > 0;  // set-up too: bodies are made
   const MemoryUse memory;
   try {
-    run_kept(method, problem, request, options, result);
+    {
+      const WithoutCache no_cache(timed);
+      run_kept(method, problem, request, options, result);
+    }
     const double bytes_per_particle = memory.bytes_per_particle(result.particles);
-    no_cache.end();
     scene::add_exact_errors(problem, result);
-    no_cache.begin();
     // The run itself was the warm-up where there are repeats.
-    const Timings timings = time_runs(method, problem, request, options.repeats);
+    const Timings timings = [&] {
+      const WithoutCache no_cache(timed);
+      return time_runs(method, problem, request, options.repeats);
+    }();
     progress.finish();
     write_summary(id, result, timings, bytes_per_particle, out);
     // Until the results are on the disk the checkpoint is worth more than they are.

@@ -5,6 +5,7 @@
 #include "particle/delaunay/delaunay.hpp"
 #include "particle/delaunay/fracture.hpp"
 #include "scene/reader.hpp"
+#include "tests/unit/particle/fragments.hpp"
 #include "tests/unit/potential.hpp"
 
 #include <gtest/gtest.h>
@@ -292,25 +293,11 @@ scene::Result run(const scene::Problem& problem,
   return result;
 }
 
-/// A free beam whose halves fly apart; bonds break at a strain of .05. A lattice: see the
-/// limits in the method's README.
-scene::Problem torn_beam() {
-  scene::Problem problem = beam();
-  problem.fracture->energy_release_rate /= 4;
-  problem.initial_velocity.emplace();
-  problem.initial_velocity->component[0] = scene::Expression("0.2*Z*Y", {});
-  problem.initial_velocity->component[2] = scene::Expression("2.5*tanh(Z - 3)", {});
-  problem.end_time = 0.2;
-  problem.history_rows = 60;
-  problem.frames = 0;
-  return problem;
-}
-
 }  // namespace
 
 TEST(FractureSolid, ATornBeamFliesApartAndKeepsItsMomenta) {
-  const scene::Result result =
-      run(torn_beam(), {{"beta", "0"}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"courant", "0.1"}});
+  const scene::Result result = run(
+      fragments::torn(), {{"beta", "0"}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"courant", "0.1"}});
   EXPECT_GT(result.quantities.at("broken_bonds"), 20);
   EXPECT_GE(result.quantities.at("fragments"), 2);
   EXPECT_LT(result.invariants.at("linear_momentum_drift"), 1e-12);
@@ -319,8 +306,9 @@ TEST(FractureSolid, ATornBeamFliesApartAndKeepsItsMomenta) {
 
 TEST(FractureSolid, TheEnergyBalanceClosesWhileItBreaks) {
   for (const char* beta : {"0", "0.5"}) {
-    const scene::Result coarse = run(
-        torn_beam(), {{"beta", beta}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"courant", "0.1"}});
+    const scene::Result coarse =
+        run(fragments::torn(),
+            {{"beta", beta}, {"xi_n", "0.1"}, {"xi_t", "0.1"}, {"courant", "0.1"}});
     EXPECT_GT(coarse.quantities.at("broken_bonds"), 20);
     EXPECT_LT(coarse.invariants.at("energy_drift"), 5e-4) << beta;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// A beam of irregular particles that is torn apart, for the tests of fragments.
+// A beam that is torn apart, for the tests of fracture in 3D and of fragments.
 
 #include "particle/core/leapfrog.hpp"
 #include "particle/delaunay/fracture.hpp"
